@@ -1,0 +1,102 @@
+"""A vehicle and an environment, joined into one MuJoCo model."""
+
+import warnings
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from buoyancy_mj import catalog
+from buoyancy_mj.errors import BuoyancyWarning, ModelError, SceneError, choices
+from buoyancy_mj.scene import INTEGRATORS, Scene, Start
+
+ENVIRONMENT = "environment/"
+"""What the names of the environment start with in a joined model; the vehicle's stay as they are."""
+_FREE = mujoco.mjtJoint.mjJNT_FREE
+
+
+def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """The model of a scene, and its data at the start.
+
+    The vehicle's file is the base: its options, names, keyframes and custom elements stay. Its body
+    gets a free joint if it has none, and the environment is attached to the world under the prefix
+    'environment/'.
+
+    Raises:
+        ModelError: a file is missing, MuJoCo refuses it, or it has no body that could float.
+        SceneError: the start names a keyframe that does not exist.
+    """
+    path = catalog.model_path(scene.vehicle, scene.folder)
+    spec = catalog.read_spec(path)
+    _free(spec, path)
+    _leave_out_dry_land(spec, scene.water.level)
+    bodies = len(spec.bodies)
+    if scene.environment is not None:
+        surroundings = catalog.read_spec(catalog.environment_path(scene.environment, scene.folder))
+        spec.attach(surroundings, prefix=ENVIRONMENT, frame=spec.worldbody.add_frame())
+    # what the scene decides
+    spec.option.timestep = scene.timestep
+    spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
+    try:
+        model = spec.compile()
+    except ValueError as error:
+        raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
+    data = mujoco.MjData(model)
+    _place(model, data, scene.start, bodies)
+    return model, data
+
+
+def _free(spec: mujoco.MjSpec, path: Path) -> None:
+    """Give the vehicle a free joint, unless a body of it already floats or moves on joints of its own."""
+    roots = list(spec.worldbody.bodies)
+    if not roots:
+        raise ModelError(f"'{path}' has no body that could float; put the vehicle's geoms into a <body>")
+    jointed = [body for body in roots if body.joints]
+    if any(joint.type == _FREE for body in jointed for joint in body.joints):
+        return
+    fixed = [body for body in roots if not body.joints]
+    if len(fixed) == 1 and not jointed:
+        fixed[0].add_freejoint()
+        # the root's joint comes first, and the keyframes of the fixed vehicle lack it
+        for key in spec.keys:
+            if len(key.qpos):
+                key.qpos = [*fixed[0].pos, *fixed[0].quat, *key.qpos]
+            if len(key.qvel):
+                key.qvel = [0.0] * 6 + list(key.qvel)
+    elif not jointed:
+        names = ", ".join(f"'{body.name}'" for body in fixed)
+        raise ModelError(
+            f"'{path}' has {len(fixed)} bodies without a joint ({names}); give the one that floats a <freejoint/>"
+        )
+
+
+def _leave_out_dry_land(spec: mujoco.MjSpec, level: float) -> None:
+    """Remove ground planes of the vehicle's file that lie at the water level or above: no water could be there."""
+    for geom in list(spec.worldbody.geoms):
+        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE and geom.pos[2] >= level - 1e-9:
+            warnings.warn(
+                f"the vehicle's ground plane '{geom.name}' at z = {geom.pos[2]:g} m would keep out the water at {level:g} m "
+                "and was left out",
+                BuoyancyWarning,
+                stacklevel=3,
+            )
+            spec.delete(geom)
+
+
+def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int) -> None:
+    """Set the state at time 0; the vehicle's are the first `bodies`."""
+    if start.keyframe is not None:
+        names = [model.key(i).name for i in range(model.nkey)]
+        if start.keyframe not in names:
+            raise SceneError(f"start: the vehicle has no keyframe '{start.keyframe}'; {choices(start.keyframe, names)}")
+        mujoco.mj_resetDataKeyframe(model, data, names.index(start.keyframe))
+        data.time = 0.0
+    free = (j for j in range(model.njnt) if model.jnt_type[j] == _FREE and model.jnt_bodyid[j] < bodies)
+    joint = next(free, None)
+    if joint is None:
+        return
+    q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+    attitude = np.empty(4)
+    mujoco.mju_euler2Quat(attitude, np.array([start.yaw, start.pitch, start.roll]), "zyx")
+    data.qpos[q : q + 7] = [*start.position, *attitude]
+    data.qvel[v : v + 6] = [*start.velocity, *start.angular_velocity]

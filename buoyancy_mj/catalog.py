@@ -1,0 +1,87 @@
+"""The scenes and models that ship, by name."""
+
+from pathlib import Path
+
+import mujoco
+
+from buoyancy_mj.errors import BuoyancyError, ModelError, SceneError, choices
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+def _shipped(kind: str) -> Path:
+    """The folder of `kind`: inside an installed package, beside it in a checkout."""
+    inside = _PACKAGE / "shipped" / kind
+    return inside if inside.is_dir() else _PACKAGE.parent / kind
+
+
+def scenes() -> dict[str, Path]:
+    """Scene files by name."""
+    return {path.stem: path for path in sorted(_shipped("scenes").glob("*.toml"))}
+
+
+def models() -> dict[str, Path]:
+    """Vehicle MJCF files by name: `models/NAME/NAME.xml`."""
+    return {path.parent.name: path for path in sorted(_shipped("models").glob("*/*.xml")) if path.stem == path.parent.name}
+
+
+def environments() -> dict[str, Path]:
+    """Environment MJCF files by name: `scenes/NAME.xml`."""
+    return {path.stem: path for path in sorted(_shipped("scenes").glob("*.xml"))}
+
+
+def scene_path(name: str) -> Path:
+    """The file of a scene, given by path or by the name of one that ships.
+
+    Raises:
+        SceneError: neither exists.
+    """
+    return _found(name, scenes(), Path(), "scene", SceneError)
+
+
+def model_path(name: str, base: Path = Path()) -> Path:
+    """The file of a vehicle, given by path (relative to `base`) or by the name of one that ships.
+
+    Raises:
+        ModelError: neither exists.
+    """
+    return _found(name, models(), base, "vehicle", ModelError)
+
+
+def environment_path(name: str, base: Path = Path()) -> Path:
+    """The file of an environment, given by path (relative to `base`) or by the name of one that ships.
+
+    Raises:
+        ModelError: neither exists.
+    """
+    return _found(name, environments(), base, "environment", ModelError)
+
+
+def summary(model: Path) -> str:
+    """The first line of text in a model's README."""
+    readme = model.parent / "README.md"
+    lines = readme.read_text().splitlines() if readme.is_file() else []
+    return next((line for line in lines if line and not line.startswith("#")), "")
+
+
+def _found(name: str, shipped: dict[str, Path], base: Path, kind: str, error: type[BuoyancyError]) -> Path:
+    if name in shipped:
+        return shipped[name]
+    path = base / Path(name).expanduser()
+    if path.is_file():
+        return path
+    if path.is_dir():
+        raise error(f"{kind} '{name}' is a folder; give a file, or the name of one that ships: {', '.join(shipped)}")
+    raise error(f"there is no {kind} '{name}', neither a file nor one that ships; {choices(name, shipped)}")
+
+
+def read_spec(path: Path) -> mujoco.MjSpec:
+    """An MJCF or URDF file, not yet compiled.
+
+    Raises:
+        ModelError: MuJoCo cannot read it; its own message is kept.
+    """
+    try:
+        return mujoco.MjSpec.from_file(str(path))
+    except Exception as error:
+        raise ModelError(f"MuJoCo cannot read '{path}': {' '.join(str(error).split())}") from error

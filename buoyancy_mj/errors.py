@@ -1,0 +1,44 @@
+"""What can go wrong, as exceptions whose one sentence gives the value got, what was possible and the mend."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class BuoyancyError(Exception):
+    """Root of every error this package raises on purpose."""
+
+
+class MeshError(BuoyancyError):
+    """A mesh that bounds no volume: open, empty, crossing itself, degenerate or absurdly scaled."""
+
+
+class ModelError(BuoyancyError):
+    """A MuJoCo model that water cannot act on."""
+
+
+class SceneError(BuoyancyError):
+    """A scene that cannot be read, or a value in it that makes no sense."""
+
+
+class WaterError(BuoyancyError):
+    """Water or waves that do not exist in nature or in this package."""
+
+
+class DivergenceError(BuoyancyError):
+    """A simulation that left the finite numbers."""
+
+
+class RecordingError(BuoyancyError):
+    """A recording that cannot be written to its end."""
+
+
+class BuoyancyWarning(UserWarning):
+    """Something was mended, left out or is in doubt, and the user should know."""
+
+
+def choices(got: str, possible: Iterable[str]) -> str:
+    """The tail of an error message: the nearest match to `got`, if any, and all that was possible."""
+    names = sorted(possible)
+    near = difflib.get_close_matches(got, names, n=1)
+    hint = f"did you mean '{near[0]}'? " if near else ""
+    return f"{hint}possible: {', '.join(names) or 'nothing'}"

@@ -1,0 +1,132 @@
+"""The wet part of closed triangle meshes under a surface: exact on triangles, no lid needed.
+
+With the depth d = elevation - z, the field (0, 0, -d) has divergence 1 in the water and vanishes on
+the surface, so by Gauss
+
+    V = - int d n_z dA,   int x dV = - int x d n_z dA,   int z dV = - int (z + d/2) d n_z dA
+
+over the wet side of the mesh alone. With d linear on a triangle the integrands are quadratic, and
+the integral of a product of linear functions f, g over a triangle of area a is exactly
+a (sum f sum g + sum f g) / 12.
+"""
+
+import math
+
+from numba import njit
+
+from buoyancy_mj.kernels.waves import elevation
+
+# columns of one row of results
+VOLUME, CENTROID, WETTED_AREA, WATERPLANE_AREA, COLUMNS = 0, slice(1, 4), 4, 5, 6
+
+
+@njit(cache=True, inline="always")
+def _moments(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
+    """Volume, first moments and signed horizontal area under one wholly wet triangle."""
+    # n_z dA over the triangle: its signed area seen from above
+    a = 0.5 * ((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
+    d = d0 + d1 + d2
+    w0, w1, w2 = z0 + 0.5 * d0, z1 + 0.5 * d1, z2 + 0.5 * d2
+    return (
+        -a * d / 3.0,
+        -a * (d * (x0 + x1 + x2) + d0 * x0 + d1 * x1 + d2 * x2) / 12.0,
+        -a * (d * (y0 + y1 + y2) + d0 * y0 + d1 * y1 + d2 * y2) / 12.0,
+        -a * (d * (w0 + w1 + w2) + d0 * w0 + d1 * w1 + d2 * w2) / 12.0,
+        -a,
+    )
+
+
+@njit(cache=True)
+def _cut(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
+    """`_moments` of the wet part of a triangle with one or two wet corners, and the fraction of its area that is wet."""
+    wet0, wet1, wet2 = d0 > 0.0, d1 > 0.0, d2 > 0.0
+    # turn the triangle so that corner 0 is alone on its side
+    alone = int(wet0) + int(wet1) + int(wet2) == 1
+    if wet1 == alone and wet0 != alone and wet2 != alone:
+        x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = x1, y1, z1, d1, x2, y2, z2, d2, x0, y0, z0, d0
+    elif wet2 == alone and wet0 != alone and wet1 != alone:
+        x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = x2, y2, z2, d2, x0, y0, z0, d0, x1, y1, z1, d1
+    # where its two edges meet the surface
+    s, t = d0 / (d0 - d1), d0 / (d0 - d2)
+    ax, ay, az = x0 + s * (x1 - x0), y0 + s * (y1 - y0), z0 + s * (z1 - z0)
+    bx, by, bz = x0 + t * (x2 - x0), y0 + t * (y2 - y0), z0 + t * (z2 - z0)
+    if alone:
+        return _moments(x0, y0, z0, d0, ax, ay, az, 0.0, bx, by, bz, 0.0), s * t
+    v, mx, my, mz, p = _moments(ax, ay, az, 0.0, x1, y1, z1, d1, x2, y2, z2, d2)
+    w, nx, ny, nz, q = _moments(ax, ay, az, 0.0, x2, y2, z2, d2, bx, by, bz, 0.0)
+    return (v + w, mx + nx, my + ny, mz + nz, p + q), 1.0 - s * t
+
+
+@njit(cache=True)
+def submerge_hulls(
+    vertices,  # (v, 3) of all hulls, in the frame of each
+    vertex_starts,  # (h + 1,)
+    faces,  # (f, 3) into vertices
+    face_starts,  # (h + 1,)
+    face_areas,  # (f,)
+    whole,  # (h, 6) volume, centroid, area of each whole hull, radius of the sphere about its centroid
+    frames,  # (h,) row of each hull in positions and rotations
+    positions,  # (n, 3) of the frames in the world
+    rotations,  # (n, 9) world_from_frame, row-major
+    level,
+    waves,  # (w, 6)
+    time,
+    points,  # (v, 4) scratch
+    out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
+):
+    """The submersion of each hull; only hulls that the surface may cut cost more than a few operations."""
+    amplitude = steepness = 0.0
+    for i in range(waves.shape[0]):
+        amplitude += abs(waves[i, 0])
+        steepness += abs(waves[i, 0]) * math.hypot(waves[i, 1], waves[i, 2])
+    for h in range(frames.shape[0]):
+        origin, r = positions[frames[h]], rotations[frames[h]]
+        cx, cy, cz = whole[h, 1], whole[h, 2], whole[h, 3]
+        x = origin[0] + r[0] * cx + r[1] * cy + r[2] * cz
+        y = origin[1] + r[3] * cx + r[4] * cy + r[5] * cz
+        z = origin[2] + r[6] * cx + r[7] * cy + r[8] * cz
+        # how deep the centroid lies, and how much shallower or deeper any point of the hull can be
+        depth = level + elevation(waves, x, y, time) - z
+        reach = whole[h, 5] + min(2.0 * amplitude, steepness * whole[h, 5])
+        if not math.isfinite(depth):
+            out[h, :] = math.nan
+            continue
+        if depth >= reach:
+            out[h, 0], out[h, 1], out[h, 2], out[h, 3], out[h, 4], out[h, 5] = whole[h, 0], x, y, z, whole[h, 4], 0.0
+            continue
+        out[h, 0], out[h, 4], out[h, 5] = 0.0, 0.0, 0.0
+        out[h, 1:4] = math.nan
+        if depth <= -reach:
+            continue
+        # points (x, y, z) of the hull relative to its origin, turned as the world, and their depths
+        for i in range(vertex_starts[h], vertex_starts[h + 1]):
+            vx, vy, vz = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+            px = r[0] * vx + r[1] * vy + r[2] * vz
+            py = r[3] * vx + r[4] * vy + r[5] * vz
+            pz = r[6] * vx + r[7] * vy + r[8] * vz
+            points[i, 0], points[i, 1], points[i, 2] = px, py, pz
+            points[i, 3] = level + elevation(waves, origin[0] + px, origin[1] + py, time) - (origin[2] + pz)
+        v = mx = my = mz = p = area = 0.0
+        for f in range(face_starts[h], face_starts[h + 1]):
+            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+            d0, d1, d2 = points[a, 3], points[b, 3], points[c, 3]
+            if d0 <= 0.0 and d1 <= 0.0 and d2 <= 0.0:
+                continue
+            x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
+            x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
+            x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
+            if d0 > 0.0 and d1 > 0.0 and d2 > 0.0:
+                part = _moments(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
+                area += face_areas[f]
+            else:
+                part, fraction = _cut(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
+                area += fraction * face_areas[f]
+            v += part[0]
+            mx += part[1]
+            my += part[2]
+            mz += part[3]
+            p += part[4]
+        # below the rounding of the sums there is no centroid to speak of
+        if v > 1e-14 * whole[h, 0]:
+            out[h, 0], out[h, 4], out[h, 5] = v, area, p
+            out[h, 1], out[h, 2], out[h, 3] = origin[0] + mx / v, origin[1] + my / v, origin[2] + mz / v

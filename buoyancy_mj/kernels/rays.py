@@ -1,0 +1,117 @@
+"""What a grid of parallel rays sees of a triangle mesh: its silhouette, and how often it encloses space."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True, inline="always")
+def _left(u, v, i, j, x, y):
+    """Whether (x, y) lies left of the edge from i to j; its two faces never agree, so no ray slips between them."""
+    if i < j:
+        return (u[j] - u[i]) * (y - v[i]) - (v[j] - v[i]) * (x - u[i]) >= 0.0
+    return not (u[i] - u[j]) * (y - v[j]) - (v[i] - v[j]) * (x - u[j]) >= 0.0
+
+
+@njit(cache=True, inline="always")
+def _covers(u, v, face, x, y):
+    """1 where a face that winds left, seen from above, covers (x, y), -1 where it winds right, else 0."""
+    left = _left(u, v, face[0], face[1], x, y)
+    if _left(u, v, face[1], face[2], x, y) != left or _left(u, v, face[2], face[0], x, y) != left:
+        return 0
+    return 1 if left else -1
+
+
+@njit(cache=True, inline="always")
+def _height(x, y, z, face, px, py):
+    """Height of a face's plane over (px, py), held within the face."""
+    i, j, k = face[0], face[1], face[2]
+    twice = (x[j] - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (y[j] - y[i])
+    low, high = min(z[i], z[j], z[k]), max(z[i], z[j], z[k])
+    if twice == 0.0:
+        return 0.5 * (low + high)
+    s = ((px - x[i]) * (y[k] - y[i]) - (x[k] - x[i]) * (py - y[i])) / twice
+    t = ((x[j] - x[i]) * (py - y[i]) - (px - x[i]) * (y[j] - y[i])) / twice
+    return min(max(z[i] + s * (z[j] - z[i]) + t * (z[k] - z[i]), low), high)
+
+
+@njit(cache=True, inline="always")
+def _cells(a, b, c, low, step, count):
+    """First and last grid line whose centre lies between the extremes of three coordinates."""
+    first = int(math.ceil((min(a, b, c) - low) / step - 0.5))
+    last = int(math.floor((max(a, b, c) - low) / step - 0.5))
+    return max(first, 0), min(last, count - 1)
+
+
+@njit(cache=True)
+def silhouette(u, v, faces, low, step, grid):
+    """Mark the cells of `grid` (n, m) whose centres low + (i + 1/2) step the triangles (u, v) cover."""
+    for f in range(faces.shape[0]):
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        first_u, last_u = _cells(u[i], u[j], u[k], low[0], step[0], grid.shape[0])
+        first_v, last_v = _cells(v[i], v[j], v[k], low[1], step[1], grid.shape[1])
+        for p in range(first_u, last_u + 1):
+            for q in range(first_v, last_v + 1):
+                if not grid[p, q]:
+                    x, y = low[0] + (p + 0.5) * step[0], low[1] + (q + 0.5) * step[1]
+                    grid[p, q] = _covers(u, v, faces[f], x, y) != 0
+
+
+@njit(cache=True)
+def misenclosed(vertices, faces, count):
+    """Volumes enclosed more than once and less than never, by count * count vertical rays.
+
+    Along each ray the winding number goes up by one where it enters (n_z < 0) and down where it
+    leaves; space with winding 0 is outside, 1 is inside, anything else is a mesh that crosses itself.
+    """
+    low, high = vertices[0].copy(), vertices[0].copy()
+    for i in range(vertices.shape[0]):
+        for c in range(3):
+            low[c], high[c] = min(low[c], vertices[i, c]), max(high[c], vertices[i, c])
+    # a grid slightly off the bounds, so that rays miss edges aligned with it
+    step = (high - low) / (count - 0.3819660113)
+    low = low - 0.1180339887 * step
+    x, y, z = vertices[:, 0], vertices[:, 1], vertices[:, 2]
+    # count the hits of each ray, then list them
+    starts = np.zeros(count * count + 1, np.int64)
+    heights, signs = np.zeros(0), np.zeros(0, np.int8)
+    filled = np.zeros(0, np.int64)
+    for listing in range(2):
+        if listing:
+            for ray in range(count * count):
+                starts[ray + 1] += starts[ray]
+            heights, signs = np.zeros(starts[-1]), np.zeros(starts[-1], np.int8)
+            filled = starts[:-1].copy()
+        for f in range(faces.shape[0]):
+            i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+            first_x, last_x = _cells(x[i], x[j], x[k], low[0], step[0], count)
+            first_y, last_y = _cells(y[i], y[j], y[k], low[1], step[1], count)
+            for p in range(first_x, last_x + 1):
+                for q in range(first_y, last_y + 1):
+                    rx, ry = low[0] + (p + 0.5) * step[0], low[1] + (q + 0.5) * step[1]
+                    side = _covers(x, y, faces[f], rx, ry)
+                    if side == 0:
+                        continue
+                    ray = p * count + q
+                    if listing:
+                        heights[filled[ray]] = _height(x, y, z, faces[f], rx, ry)
+                        signs[filled[ray]] = -side
+                        filled[ray] += 1
+                    else:
+                        starts[ray + 1] += 1
+    # walk up each ray
+    doubled = inverted = 0.0
+    for ray in range(count * count):
+        first, last = starts[ray], starts[ray + 1]
+        order = np.argsort(heights[first:last])
+        winding = 0
+        for n in range(last - first - 1):
+            winding += signs[first + order[n]]
+            length = heights[first + order[n + 1]] - heights[first + order[n]]
+            if winding > 1:
+                doubled += (winding - 1) * length
+            elif winding < 0:
+                inverted -= winding * length
+    cell = step[0] * step[1]
+    return doubled * cell, inverted * cell

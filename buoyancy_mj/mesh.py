@@ -1,0 +1,160 @@
+"""`TriMesh`: a triangle mesh that is closed and outward, or does not exist."""
+
+import dataclasses
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from buoyancy_mj.errors import MeshError
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class TriMesh:
+    """A closed triangle mesh whose faces wind counter-clockwise seen from outside.
+
+    Closed means that each directed edge is met as often as its reverse, so that the area vectors
+    sum to zero; several pieces, holes through the solid and inner cavities are all fine.
+
+    Raises:
+        MeshError: not finite, empty, open, or with no positive volume. `mending.mended` repairs
+            what can be repaired.
+    """
+
+    vertices: NDArray[np.float64]
+    """Corners (n, 3) [m]."""
+    faces: NDArray[np.int64]
+    """Indices of the corners of each triangle (m, 3)."""
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
+        v, f = checked_arrays(vertices, faces)
+        if len(open_edges(f)):
+            raise MeshError(
+                f"a mesh of {len(f)} triangles is open along {len(open_edges(f))} edges; "
+                "a hull must be closed: close it, or let buoyancy_mj.mended try"
+            )
+        v, f = v.copy(), f.copy()
+        v.setflags(write=False)
+        f.setflags(write=False)
+        object.__setattr__(self, "vertices", v)
+        object.__setattr__(self, "faces", f)
+        if not self.volume > 0.0:
+            raise MeshError(
+                f"a mesh of {len(f)} triangles encloses {self.volume:.3g} m^3; a hull must enclose a positive volume: "
+                "turn its faces outward, or let buoyancy_mj.mended try"
+            )
+
+    def __repr__(self) -> str:
+        return f"TriMesh({len(self.vertices)} vertices, {len(self.faces)} faces, {self.volume:.6g} m^3)"
+
+    @cached_property
+    def area_vectors(self) -> NDArray[np.float64]:
+        """Outward normals times areas of the triangles (m, 3) [m^2]; they sum to zero."""
+        a, b, c = self.corners
+        return 0.5 * np.cross(b - a, c - a)
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Areas of the triangles (m,) [m^2]."""
+        return np.linalg.norm(self.area_vectors, axis=1)
+
+    @property
+    def area(self) -> float:
+        """Surface area [m^2]."""
+        return float(self.areas.sum())
+
+    @property
+    def corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """First, second and third corners of all triangles, each (m, 3) [m]."""
+        a, b, c = self.vertices[self.faces.T]
+        return a, b, c
+
+    @cached_property
+    def volume(self) -> float:
+        """Enclosed volume [m^3]: a third of the flux of position through the surface (Gauss)."""
+        return float(self._tetrahedra.sum())
+
+    @cached_property
+    def centroid(self) -> NDArray[np.float64]:
+        """Centroid of the enclosed volume (3,) [m]."""
+        middle = self.vertices.mean(axis=0)
+        a, b, c = self.corners
+        return middle + self._tetrahedra @ ((a - middle) + (b - middle) + (c - middle)) / (4.0 * self.volume)
+
+    @cached_property
+    def _tetrahedra(self) -> NDArray[np.float64]:
+        """Signed volumes (m,) of the tetrahedra that the triangles span with the mean vertex."""
+        middle = self.vertices.mean(axis=0)
+        a, b, c = self.corners
+        return np.einsum("ij,ij->i", a - middle, np.cross(b - middle, c - middle)) / 6.0
+
+    @cached_property
+    def radius(self) -> float:
+        """Radius [m] of the sphere about the centroid that holds every vertex."""
+        return float(np.linalg.norm(self.vertices - self.centroid, axis=1).max())
+
+    @property
+    def extents(self) -> NDArray[np.float64]:
+        """Sides of the axis-aligned bounding box (3,) [m]."""
+        return np.ptp(self.vertices, axis=0)
+
+    def transformed(self, rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> "TriMesh":
+        """The mesh turned by `rotation` (3, 3), then moved by `translation` (3,) [m]."""
+        return TriMesh(self.vertices @ np.asarray(rotation, float).T + np.asarray(translation, float), self.faces)
+
+
+def checked_arrays(vertices: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """`vertices` as finite floats (n, 3) and `faces` as indices (m, 3) into them.
+
+    Raises:
+        MeshError: wrong shapes, no triangle, a coordinate that is not finite, an index out of range.
+    """
+    v, f = np.asarray(vertices, np.float64), np.asarray(faces)
+    if v.ndim != 2 or v.shape[1] != 3:
+        raise MeshError(f"vertices have shape {v.shape}; they must be (n, 3)")
+    if f.ndim != 2 or f.shape[1] != 3:
+        raise MeshError(f"faces have shape {f.shape}; they must be triangles (m, 3)")
+    if not len(f):
+        raise MeshError("a mesh without a single triangle encloses nothing; export it again")
+    if not np.issubdtype(f.dtype, np.integer):
+        raise MeshError(f"faces are of type {f.dtype}; they must be integer indices into the vertices")
+    if not np.isfinite(v).all():
+        bad = int(np.flatnonzero(~np.isfinite(v).all(axis=1))[0])
+        raise MeshError(f"vertex {bad} is {v[bad].tolist()}; every coordinate must be a finite number")
+    if f.min() < 0 or f.max() >= len(v):
+        raise MeshError(f"faces name vertices {f.min()} to {f.max()}; there are 0 to {len(v) - 1}")
+    return v, f.astype(np.int64)
+
+
+def open_edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Directed edges (k, 2) that their reverses do not cancel: the boundary of the surface."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    forward = edges[:, 0] < edges[:, 1]
+    pairs, inverse = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    net = np.bincount(inverse.ravel(), np.where(forward, 1, -1), len(pairs)).astype(np.int64)
+    net[pairs[:, 0] == pairs[:, 1]] = 0
+    directed = np.where((net > 0)[:, None], pairs, pairs[:, ::-1])
+    return np.repeat(directed, np.abs(net), axis=0)
+
+
+def bisected(
+    vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The same surface, its triangles halved across their longest edges until none is longer than `edge` [m]."""
+    v, f, done = vertices, faces, []
+    while len(f):
+        # turn each face so that its longest edge runs from corner 0 to corner 1
+        a, b, c = v[f.T]
+        lengths = np.stack([np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=1)
+        f = np.take_along_axis(f, (lengths.argmax(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+        long = lengths.max(axis=1) > edge
+        done.append(f[~long])
+        f = f[long]
+        m = len(v) + np.arange(len(f))
+        v = np.vstack([v, 0.5 * (v[f[:, 0]] + v[f[:, 1]])])
+        f = np.vstack([np.column_stack([f[:, 0], m, f[:, 2]]), np.column_stack([m, f[:, 1], f[:, 2]])])
+    if len(done) == 1:
+        return vertices, faces
+    # both faces at an edge have found the same midpoint, to the last bit
+    places, inverse = np.unique(v, axis=0, return_inverse=True)
+    return places, inverse.ravel()[np.vstack(done)]

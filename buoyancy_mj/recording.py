@@ -1,0 +1,391 @@
+"""`Recording`: a run as Rerun data; static things once, the rest per frame, scalars as columns."""
+
+import dataclasses
+import uuid
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import rerun as rr
+import rerun.blueprint as rrb
+import trimesh
+from numpy.typing import NDArray
+
+from buoyancy_mj import geoms
+from buoyancy_mj.errors import RecordingError
+from buoyancy_mj.mesh import bisected
+from buoyancy_mj.rrd import RrdFile
+from buoyancy_mj.simulation import Frame, Simulation, Summary
+from buoyancy_mj.submersion import wetted_surface
+
+TIMELINE = "sim_time"
+"""Simulated time [s]."""
+SURFACE_CELLS = 24
+"""Cells along each side of the water's surface."""
+SURFACE_WIDTH = 4.0
+"""Its side, over the length of the vehicle."""
+FLUSH_EVERY = 0.25
+"""Simulated time [s] after which what is buffered goes to the file, so that little is lost when a run is killed."""
+SHOWN_GROUPS = 3
+"""Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
+
+WATER = (70, 150, 215, 70)
+GRID = (190, 225, 250, 45)
+WET = np.array([25, 90, 190])
+WATERLINE = (255, 255, 255)
+COLOURS = {"weight": (235, 200, 40), "buoyancy": (60, 160, 255), "drag": (240, 90, 60)}
+SERIES: Mapping[str, tuple[tuple[str, tuple[int, int, int]], ...]] = {
+    "force": (("weight", COLOURS["weight"]), ("buoyancy", COLOURS["buoyancy"]), ("drag", COLOURS["drag"])),
+    "height": (("centre_of_gravity", (240, 130, 40)), ("surface", (60, 160, 255))),
+    "attitude": (("roll", (230, 80, 80)), ("pitch", (80, 200, 100)), ("yaw", (90, 130, 250))),
+    "energy": (
+        ("kinetic", (230, 80, 80)),
+        ("potential", COLOURS["weight"]),
+        ("buoyancy", COLOURS["buoyancy"]),
+        ("total", (230, 230, 230)),
+    ),
+}
+"""Plots, their lines and colours; submerged volumes have a line for each hull besides."""
+
+
+class Recording:
+    """Frames to a file, to a live viewer, or to both.
+
+    The file grows under the name `NAME.partial.rrd` and takes its own at the end, so that a file
+    which was there is replaced as a whole or not at all. A run that breaks off leaves what was
+    recorded until then, readable, under the name that `close` returns.
+
+    Args:
+        simulation: the run, for its model and scene.
+        path: the file; None for none.
+        live: stream to a Rerun viewer, which is started if none runs.
+
+    Raises:
+        RecordingError: the file cannot be written, or no viewer could be started.
+    """
+
+    def __init__(self, simulation: Simulation, path: Path | None = None, *, live: bool = False) -> None:
+        self.simulation = simulation
+        self.path = path
+        identity = str(uuid.uuid4())
+        self._streams = [rr.RecordingStream("buoyancy_mj", recording_id=identity) for _ in range((path is not None) + live)]
+        self._file = RrdFile(path, self._streams[0]) if path is not None else None
+        if live:
+            try:
+                self._streams[-1].spawn()
+            except Exception as error:
+                raise RecordingError(
+                    f"no Rerun viewer could be started: {error}; record to a file instead (--record)"
+                ) from error
+        self._scalars: dict[str, list[float]] = {}
+        self._times: list[float] = []
+        self._surface_centre: NDArray[np.float64] | None = None
+        self._size = 2.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.buoyancy.hulls)
+        self._drawn = list(_drawn_geoms(simulation.model))
+        self._wet: dict[int, NDArray[np.bool_]] = {}
+        self._bodies = sorted({shape.body for shape in self._drawn if shape.moves})
+        self._log_static()
+
+    @property
+    def closed(self) -> bool:
+        """Whether the file has its name already."""
+        return self._file is not None and self._file.closed
+
+    def add(self, frame: Frame) -> None:
+        """Record one frame.
+
+        Raises:
+            RecordingError: the disk is full or the file was taken away; what was written stays.
+        """
+        for stream in self._streams:
+            stream.set_time(TIMELINE, duration=frame.time)
+        self._log_bodies(frame)
+        self._log_water(frame)
+        self._log_forces(frame)
+        self._buffer(frame)
+        if self._times[-1] - self._times[0] >= FLUSH_EVERY:
+            self._send_scalars()
+            self._write()
+
+    def close(self, summary: Summary | None = None, *, complete: bool = True) -> Path | None:
+        """Send what is buffered, add the summary and give the file its name; the path under which it lies.
+
+        Raises:
+            RecordingError: the last data could not be written.
+        """
+        if summary is not None:
+            self._log("summary", rr.TextDocument(_summary_text(summary), media_type="text/markdown"), static=True)
+        self._send_scalars()
+        for stream in self._streams:
+            stream.flush()
+        if self._file is None:
+            return None
+        self._file.write()
+        return self._file.close(complete=complete)
+
+    def _log(self, entity: str, *data: Any, static: bool = False) -> None:
+        for stream in self._streams:
+            stream.log(entity, *data, static=static)
+
+    def _write(self) -> None:
+        if self._file is not None:
+            self._file.write()
+
+    # static things ----------------------------------------------------------------------------------
+
+    def _log_static(self) -> None:
+        for stream in self._streams:
+            stream.send_blueprint(self._blueprint())
+        self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        self._log(
+            "scene", rr.TextDocument(f"```toml\n{self.simulation.scene.text}\n```", media_type="text/markdown"), static=True
+        )
+        for shape in self._drawn:
+            mesh = rr.Mesh3D(vertex_positions=shape.vertices, triangle_indices=shape.faces, vertex_normals=shape.normals)
+            self._log(shape.entity, mesh, static=True)
+            self._log(shape.entity, rr.Transform3D(translation=shape.position, mat3x3=shape.rotation), static=True)
+            if not shape.moves:
+                self._log(shape.entity, rr.Mesh3D.from_fields(albedo_factor=shape.colour), static=True)
+        for plot, lines in (*SERIES.items(), ("volume", self._volume_lines())):
+            for name, colour in lines:
+                self._log(f"plots/{plot}/{name}", rr.SeriesLines(colors=[colour], names=[name], widths=[1.5]), static=True)
+        self._write()
+
+    def _volume_lines(self) -> tuple[tuple[str, tuple[int, int, int]], ...]:
+        names = [hull.name for hull in self.simulation.buoyancy.hulls]
+        hues = (
+            np.array(trimesh.visual.color.hsv_to_rgba(np.column_stack([(i * 0.61803) % 1.0, 0.5, 0.9]))[0])
+            for i in range(len(names))
+        )
+        return (
+            ("total", (230, 230, 230)),
+            *((name, tuple(hue[:3].tolist())) for name, hue in zip(names, hues, strict=True)),
+        )
+
+    def _blueprint(self) -> rrb.Blueprint:
+        """3D on the left, plots on the right, playing from the start."""
+        start = np.asarray(self.simulation.scene.start.position)
+        look = np.array([start[0], start[1], self.simulation.scene.water.level])
+        eye = look + self._size * np.array([-1.1, -1.6, 0.75])
+        view = rrb.Spatial3DView(
+            origin="world",
+            name=self.simulation.scene.title,
+            background=rrb.Background(color=[24, 30, 40]),
+            line_grid=rrb.LineGrid3D(visible=False),
+            eye_controls=rrb.EyeControls3D(position=eye, look_target=look, eye_up=[0, 0, 1]),
+        )
+        plots = [
+            rrb.TimeSeriesView(
+                origin=f"plots/{plot}",
+                name=title,
+                plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=plot != "volume"),
+            )
+            for plot, title in (
+                ("height", "height [m]"),
+                ("force", "force [N]"),
+                ("volume", "submerged volume [l]"),
+                ("attitude", "attitude [deg]"),
+                ("energy", "energy [J]"),
+            )
+        ]
+        texts = rrb.Tabs(
+            rrb.TextDocumentView(origin="summary", name="summary"), rrb.TextDocumentView(origin="scene", name="scene")
+        )
+        return rrb.Blueprint(
+            rrb.Horizontal(rrb.Vertical(view, texts, row_shares=[4, 1]), rrb.Vertical(*plots), column_shares=[3, 2]),
+            rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
+            rrb.BlueprintPanel(state="collapsed"),
+            rrb.SelectionPanel(state="collapsed"),
+        )
+
+    # one frame --------------------------------------------------------------------------------------
+
+    def _log_bodies(self, frame: Frame) -> None:
+        """Poses of bodies, what of them is wet, and the waterline on the hulls."""
+        data, water = frame.data, self.simulation.scene.water
+        for body in self._bodies:
+            self._log(
+                _entity(self.simulation.model, body),
+                rr.Transform3D(translation=data.xpos[body], mat3x3=data.xmat[body].reshape(3, 3)),
+            )
+        self._log_wetness(frame)
+        lines = [
+            wetted_surface(hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time)[1]
+            for hull, waterplane in zip(self.simulation.buoyancy.hulls, frame.loads.waterplane_area, strict=True)
+            if waterplane > 0.0
+        ]
+        strips = np.concatenate([np.zeros((0, 2, 3)), *lines])
+        self._log("world/waterline", rr.LineStrips3D(strips, colors=[WATERLINE], radii=[0.003 * self._size]))
+
+    def _log_wetness(self, frame: Frame) -> None:
+        """Colours of the vertices that moved through the surface since the last frame."""
+        data, water = frame.data, self.simulation.scene.water
+        for shape in self._drawn:
+            if not shape.moves:
+                continue
+            points = shape.vertices @ data.geom_xmat[shape.geom].reshape(3, 3).T + data.geom_xpos[shape.geom]
+            wet = water.depth(points, frame.time) > 0.0
+            if shape.geom in self._wet and np.array_equal(wet, self._wet[shape.geom]):
+                continue
+            self._wet[shape.geom] = wet
+            dyed = (0.45 * shape.colour[:3] + 0.55 * WET).astype(np.uint8)
+            self._log(shape.entity, rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour[:3])))
+
+    def _log_water(self, frame: Frame) -> None:
+        """The surface around the vehicle; it moves in whole cells, and still water only when it has to."""
+        water = self.simulation.scene.water
+        width = SURFACE_WIDTH * self._size
+        cell = width / SURFACE_CELLS
+        centre = np.round(frame.centre_of_mass[:2] / (4.0 * cell)) * 4.0 * cell
+        if not water.waves and self._surface_centre is not None and np.array_equal(centre, self._surface_centre):
+            return
+        if self._surface_centre is None:
+            corner = np.arange(SURFACE_CELLS)[:, None] * (SURFACE_CELLS + 1) + np.arange(SURFACE_CELLS)
+            a, b = corner.ravel(), corner.ravel() + SURFACE_CELLS + 1
+            faces = np.vstack([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
+            self._log("world/water", rr.Mesh3D.from_fields(triangle_indices=faces, albedo_factor=WATER), static=True)
+        self._surface_centre = centre
+        along = (np.arange(SURFACE_CELLS + 1) / SURFACE_CELLS - 0.5) * width
+        x, y = np.meshgrid(centre[0] + along, centre[1] + along, indexing="ij")
+        z = water.elevation(x, y, frame.time)
+        slope_x, slope_y = np.gradient(z, cell)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1).reshape(-1, 3)
+        positions = np.stack([x, y, z], axis=-1).reshape(-1, 3)
+        self._log("world/water", rr.Mesh3D.from_fields(vertex_positions=positions, vertex_normals=normals))
+        lattice = positions.reshape(SURFACE_CELLS + 1, SURFACE_CELLS + 1, 3)[::2, ::2]
+        lines = np.concatenate([lattice, lattice.swapaxes(0, 1)])
+        self._log("world/water/grid", rr.LineStrips3D(lines, colors=[GRID], radii=[0.0015 * self._size]))
+
+    def _log_forces(self, frame: Frame) -> None:
+        """Centres of gravity and buoyancy, and an arrow for each force, as long as half the vehicle for its weight."""
+        loads, centre = frame.loads, frame.centre_of_mass
+        weight = self._weight()
+        self._log("world/centres/gravity", rr.Points3D([centre], colors=[COLOURS["weight"]], radii=[0.02 * self._size]))
+        wet = loads.hull.volume > 0.0
+        hulls = loads.hull.centroid[wet]
+        self._log(
+            "world/centres/buoyancy_of_hulls", rr.Points3D(hulls, colors=[COLOURS["buoyancy"]], radii=[0.01 * self._size])
+        )
+        total = loads.total.centroid[None] if wet.any() else np.zeros((0, 3))
+        self._log("world/centres/buoyancy", rr.Points3D(total, colors=[COLOURS["buoyancy"]], radii=[0.02 * self._size]))
+        arrows = {"weight": (centre, np.array([0.0, 0.0, -weight]))}
+        for cause, rows in loads.by_cause.items():
+            arrows[cause] = (loads.total.centroid if wet.any() else centre, rows[:, :3].sum(axis=0))
+        scale = 0.5 * self._size / weight if weight > 0.0 else 0.0
+        for cause, (origin, force) in arrows.items():
+            self._log(
+                f"world/forces/{cause}",
+                rr.Arrows3D(
+                    origins=[origin],
+                    vectors=[scale * force],
+                    colors=[COLOURS.get(cause, (200, 200, 200))],
+                    radii=[0.012 * self._size],
+                ),
+            )
+
+    def _buffer(self, frame: Frame) -> None:
+        """Keep the frame's scalars until they are sent together."""
+        self._times.append(frame.time)
+        loads, energy = frame.loads, frame.energy
+        roll, pitch, yaw = np.degrees(frame.attitude)
+        values = {
+            "force/weight": self._weight(),
+            "height/centre_of_gravity": float(frame.centre_of_mass[2]),
+            "height/surface": frame.elevation,
+            "attitude/roll": roll,
+            "attitude/pitch": pitch,
+            "attitude/yaw": yaw,
+            "energy/kinetic": energy.kinetic,
+            "energy/potential": energy.potential,
+            "energy/buoyancy": energy.buoyancy,
+            "energy/total": energy.total,
+            "volume/total": 1000.0 * float(loads.total.volume),
+        }
+        for cause, rows in loads.by_cause.items():
+            values[f"force/{cause}"] = float(np.linalg.norm(rows[:, :3].sum(axis=0)))
+        for name, volume in zip(loads.names, loads.hull.volume, strict=True):
+            values[f"volume/{name}"] = 1000.0 * float(volume)
+        for name, value in values.items():
+            self._scalars.setdefault(name, []).append(value)
+
+    def _send_scalars(self) -> None:
+        if not self._times:
+            return
+        times = rr.TimeColumn(TIMELINE, duration=self._times)
+        for name, values in self._scalars.items():
+            for stream in self._streams:
+                stream.send_columns(f"plots/{name}", [times], rr.Scalars.columns(scalars=values))
+        self._times, self._scalars = [], {}
+
+    def _weight(self) -> float:
+        return self.simulation.mass * float(np.abs(self.simulation.model.opt.gravity[2]))
+
+
+@dataclasses.dataclass(frozen=True)
+class _Shape:
+    """A geom as it is drawn."""
+
+    geom: int
+    body: int
+    entity: str
+    moves: bool
+    colour: NDArray[np.int64]
+    position: NDArray[np.float64]
+    rotation: NDArray[np.float64]
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    normals: NDArray[np.float64]
+
+
+def _drawn_geoms(model: mujoco.MjModel) -> Iterator[_Shape]:
+    """Every geom that MuJoCo's viewer would show, or all if it would show none."""
+    shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN_GROUPS] or list(range(model.ngeom))
+    moving = {g for g in shown if model.body_weldid[model.geom_bodyid[g]]}
+    for g in shown:
+        material = model.geom_matid[g]
+        rgba = model.mat_rgba[material] if material >= 0 else model.geom_rgba[g]
+        arrays = _plane(model, g) if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE else geoms.geom_mesh(model, g)
+        if arrays is None or rgba[3] == 0.0:
+            continue
+        vertices, faces = arrays
+        if g in moving:
+            # small enough faces for their wetness to be shown by vertices
+            vertices, faces = bisected(vertices, faces, np.ptp(vertices, axis=0).max() / 12.0)
+        smooth = trimesh.graph.smooth_shade(trimesh.Trimesh(vertices, faces, process=False), angle=0.6)
+        rotation = np.empty(9)
+        mujoco.mju_quat2Mat(rotation, model.geom_quat[g])
+        body = int(model.geom_bodyid[g])
+        yield _Shape(
+            geom=g,
+            body=body,
+            entity=f"{_entity(model, body)}/{rr.escape_entity_path_part(geoms.geom_name(model, g))}",
+            moves=g in moving,
+            colour=(rgba * 255.0).astype(np.int64),
+            position=model.geom_pos[g].copy(),
+            rotation=rotation.reshape(3, 3),
+            vertices=np.asarray(smooth.vertices),
+            faces=np.asarray(smooth.faces),
+            normals=np.asarray(smooth.vertex_normals),
+        )
+
+
+def _plane(model: mujoco.MjModel, geom: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A plane as a rectangle; an endless one ends 20 m away."""
+    half = [size if size > 0.0 else 20.0 for size in model.geom_size[geom, :2]]
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * [*half, 0.0]
+    return corners, np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def _entity(model: mujoco.MjModel, body: int) -> str:
+    """Where a body stands in the recording."""
+    if not model.body_weldid[body]:
+        return f"world/environment/{rr.escape_entity_path_part(geoms.body_name(model, body))}"
+    return f"world/bodies/{rr.escape_entity_path_part(geoms.body_name(model, body))}"
+
+
+def _summary_text(summary: Summary) -> str:
+    """The summary as a Markdown table."""
+    rows = "".join(f"| {name} | {value} |\n" for name, value in summary.rows())
+    return f"| {summary.scene} | |\n|---|---|\n{rows}"

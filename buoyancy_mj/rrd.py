@@ -1,0 +1,98 @@
+"""An .rrd file that grows message by message, survives whatever ends it, and is made whole at the end.
+
+Rerun's own file sink waits for ever on a full disk, so the bytes of its stream are written here. In
+Rerun's format each read of a stream is a header of 12 bytes, then messages of a kind and a length
+(two little-endian 64-bit integers) and that many bytes, then one of kind 0 and a footer. One file is
+one header and all the messages; `rerun rrd optimize` adds the footer and packs the frames together.
+"""
+
+import os
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import rerun as rr
+
+from buoyancy_mj.errors import RecordingError
+
+_HEADER, _MESSAGE, _END = 12, struct.Struct("<QQ"), 0
+
+
+class RrdFile:
+    """What a stream logs, in a file.
+
+    It grows under the name `NAME.partial.rrd` and takes its own when it is whole, so that a file
+    which was there is replaced at once or not at all.
+
+    Raises:
+        RecordingError: the file cannot be made.
+    """
+
+    def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
+        self.path = path
+        self.growing = path.with_name(f"{path.stem}.partial.rrd")
+        self._stream = stream.binary_stream()
+        self._written = 0
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._descriptor = os.open(self.growing, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+        except OSError as error:
+            raise RecordingError(
+                f"cannot write '{self.growing}': {error.strerror}; choose another place (--record)"
+            ) from error
+        self.closed = False
+
+    def write(self) -> None:
+        """Append what has been logged since the last call.
+
+        Raises:
+            RecordingError: the disk is full or gone; the file ends with its last whole message.
+        """
+        chunk = memoryview(_messages(self._stream.read() or b"", first=self._written == 0))
+        size = self._written + len(chunk)
+        try:
+            while chunk:
+                chunk = chunk[os.write(self._descriptor, chunk) :]
+        except OSError as error:
+            os.ftruncate(self._descriptor, self._written)
+            path = self.close(complete=False)
+            raise RecordingError(f"the recording broke off: {error.strerror}; what was written is in '{path}'") from error
+        self._written = size
+
+    def close(self, *, complete: bool) -> Path:
+        """Make the file whole and give it its name, unless it is a piece and a whole one is there.
+
+        Returns:
+            Where it lies.
+        """
+        os.close(self._descriptor)
+        self.closed = True
+        _made_whole(self.growing)
+        if complete or not self.path.exists():
+            os.replace(self.growing, self.path)
+            return self.path
+        return self.growing
+
+
+def _messages(chunk: bytes, *, first: bool) -> bytes:
+    """The messages of one read, without its end; with its header if it is the first."""
+    if not chunk:
+        return b""
+    place = _HEADER
+    while True:
+        kind, length = _MESSAGE.unpack_from(chunk, place)
+        if kind == _END:
+            return chunk[0 if first else _HEADER : place]
+        place += _MESSAGE.size + length
+
+
+def _made_whole(path: Path) -> None:
+    """Give the file its footer; where that fails, for want of space, it stays as it is and can still be opened."""
+    whole = path.with_name(f"{path.stem}.whole.rrd")
+    command = [sys.executable, "-m", "rerun", "rrd", "optimize", str(path), "-o", str(whole)]
+    done = subprocess.run(command, capture_output=True, check=False)
+    if done.returncode == 0 and whole.is_file():
+        os.replace(whole, path)
+    else:
+        whole.unlink(missing_ok=True)

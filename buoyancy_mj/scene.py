@@ -1,0 +1,188 @@
+"""`Scene`: what one run needs, read from TOML and validated."""
+
+import dataclasses
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import mujoco
+
+from buoyancy_mj.drag import Drag
+from buoyancy_mj.errors import SceneError, choices
+from buoyancy_mj.tables import built
+from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
+
+WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
+"""Kinds of waves in a scene file."""
+INTEGRATORS = {
+    name.lower(): value
+    for name, value in ((key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items())
+}
+"""MuJoCo's integrators by lower-case name."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Start:
+    """Where and how fast the vehicle starts.
+
+    Raises:
+        SceneError: a value that is not finite.
+    """
+
+    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Of the vehicle's root body (3,) [m], world frame."""
+    roll: float = 0.0
+    """About its x axis [rad]."""
+    pitch: float = 0.0
+    """About its y axis, bow down [rad]."""
+    yaw: float = 0.0
+    """About the vertical [rad]; turned first, then pitch, then roll."""
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Of the root body (3,) [m/s], world frame."""
+    angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Of the root body (3,) [rad/s], its own frame."""
+    keyframe: str | None = None
+    """A keyframe of the vehicle, for its joints and controls; position and attitude come from here."""
+
+    def __post_init__(self) -> None:
+        numbers = (*self.position, self.roll, self.pitch, self.yaw, *self.velocity, *self.angular_velocity)
+        if not all(math.isfinite(number) for number in numbers):
+            raise SceneError(f"start holds {numbers}; every number must be finite")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Scene:
+    """A vehicle, its water, its start and how long to look.
+
+    Raises:
+        SceneError: a value out of its range.
+    """
+
+    title: str
+    """One line."""
+    vehicle: str
+    """MJCF or URDF file, or the name of a model that ships."""
+    environment: str | None = None
+    """MJCF file of what stands around, or the name of one that ships."""
+    duration: float = 5.0
+    """Simulated time [s]."""
+    timestep: float = 0.01
+    """MuJoCo's timestep [s]."""
+    integrator: str = "implicitfast"
+    """MuJoCo's integrator."""
+    record_rate: float = 60.0
+    """Frames recorded per simulated second [Hz]."""
+    geoms: tuple[str, ...] | None = None
+    """Which geoms displace water (name globs, group:N); None for the vehicle's own choice."""
+    water: Water = Water()
+    """The sea."""
+    start: Start = Start()
+    """Pose and velocity at time 0."""
+    drag: Drag | None = Drag()
+    """How damping is estimated; None for none."""
+    text: str = ""
+    """The scene as TOML text, for the record."""
+    folder: Path = Path()
+    """What relative paths in it start from."""
+
+    def __post_init__(self) -> None:
+        for name, limit in (("duration", 1e6), ("timestep", 1.0), ("record_rate", 1e5)):
+            value = getattr(self, name)
+            if not 0.0 < value <= limit:
+                raise SceneError(f"{name} is {value:g}; it must be above 0 and at most {limit:g}")
+        if self.integrator.lower() not in INTEGRATORS:
+            raise SceneError(f"unknown integrator '{self.integrator}'; {choices(self.integrator, INTEGRATORS)}")
+
+
+def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
+    """The scene in a TOML file, with `settings` such as 'water.waves.0.amplitude=0.1' laid over it.
+
+    Raises:
+        SceneError: the file or a setting cannot be read, or says something that makes no sense.
+    """
+    try:
+        table = tomllib.loads(path.read_text())
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(f"cannot read scene '{path}': {error}") from error
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"scene '{path}' is no valid TOML: {error}") from error
+    for setting in settings:
+        _set(table, setting)
+    told = "".join(f"# with {setting}\n" for setting in settings)
+    return scene_from_table(table, where=f"scene '{path.stem}'", text=told + path.read_text(), folder=path.parent)
+
+
+def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str = "", folder: Path = Path()) -> Scene:
+    """The scene that a table of plain values describes, see `read_scene`."""
+    plain = dict(table)
+    given: dict[str, Any] = {"text": text, "folder": folder}
+    given["water"] = _water(_table(plain.pop("water", {}), f"{where}: water"), f"{where}: water")
+    given["start"] = built(Start, _table(plain.pop("start", {}), f"{where}: start"), f"{where}: start")
+    drag = plain.pop("drag", True)
+    if isinstance(drag, bool):
+        given["drag"] = Drag() if drag else None
+    else:
+        given["drag"] = built(Drag, _table(drag, f"{where}: drag"), f"{where}: drag")
+    # keys of the scene that are tables of their own are still its keys
+    for key in plain:
+        known = [field.name for field in dataclasses.fields(Scene) if field.name not in ("text", "folder")]
+        if key not in known:
+            raise SceneError(f"{where}: unknown key '{key}'; {choices(key, known)}")
+    return built(Scene, plain, where, **given)
+
+
+def _water(table: Mapping[str, Any], where: str) -> Water:
+    plain = dict(table)
+    entries = plain.pop("waves", [])
+    if not isinstance(entries, list):
+        raise SceneError(f"{where}: waves is {entries!r}; needed is a list of tables [[water.waves]]")
+    waves: list[Wave] = []
+    for i, entry in enumerate(entries):
+        place = f"{where}.waves.{i}"
+        wave = dict(_table(entry, place))
+        kind = wave.pop("kind", "regular")
+        if kind not in WAVES:
+            raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
+        waves.append(built(WAVES[kind], wave, place))
+    return built(Water, plain, where, waves=tuple(waves))
+
+
+def _table(value: Any, where: str) -> Mapping[str, Any]:
+    if not isinstance(value, dict):
+        raise SceneError(f"{where} is {value!r}; needed is a table")
+    return value
+
+
+def _set(table: dict[str, Any], setting: str) -> None:
+    """Lay one KEY=VALUE over a table; VALUE is TOML, or a bare word."""
+    key, equals, text = setting.partition("=")
+    if not equals or not key.strip():
+        raise SceneError(f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2")
+    try:
+        value: Any = tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        value = text.strip()
+    place: Any = table
+    *path, last = key.strip().split(".")
+    for depth, part in enumerate(path):
+        place = _entry(place, part, ".".join(path[: depth + 1]), make=True)
+    if isinstance(place, list):
+        _entry(place, last, key, make=False)
+        place[int(last)] = value
+    elif isinstance(place, dict):
+        place[last] = value
+    else:
+        raise SceneError(f"cannot set '{key}': '{'.'.join(path)}' is {place!r}, no table")
+
+
+def _entry(place: Any, part: str, key: str, *, make: bool) -> Any:
+    """One step into a table or a list."""
+    if isinstance(place, list):
+        if not part.isdigit() or int(part) >= len(place):
+            raise SceneError(f"cannot set '{key}': the list has {len(place)} entries, counted from 0")
+        return place[int(part)]
+    if not isinstance(place, dict):
+        raise SceneError(f"cannot set '{key}': it lies in {place!r}, no table")
+    return place.setdefault(part, {}) if make else place[part]

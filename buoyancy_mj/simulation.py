@@ -1,0 +1,273 @@
+"""`Simulation`: run a scene frame by frame, and what came of it."""
+
+import dataclasses
+import math
+import time
+import warnings
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from buoyancy_mj.assembly import assembled
+from buoyancy_mj.buoyancy import Buoyancy
+from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
+from buoyancy_mj.geoms import body_name
+from buoyancy_mj.loads import Loads
+from buoyancy_mj.scene import Scene
+
+LAST = 2.0
+"""Time at the end of a run [s] over which the summary looks at the motion."""
+PLAUSIBLE = 1e-4, 1e4
+"""Displaced over own mass, fully under water, of anything real: a lead weight has 0.09, an airship in water 800."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Energy:
+    """Mechanical energy of the vehicle and the water that it displaces [J]; constant without drag on still water."""
+
+    kinetic: float
+    """Of the bodies."""
+    potential: float
+    """Of the bodies in gravity (and in springs), zero at z = 0."""
+    buoyancy: float
+    """Of the displaced water, lifted from the submerged centroid to the surface: rho g V (elevation - z)."""
+
+    @property
+    def total(self) -> float:
+        """The sum."""
+        return self.kinetic + self.potential + self.buoyancy
+
+
+@dataclasses.dataclass(frozen=True)
+class Frame:
+    """One instant of a run."""
+
+    time: float
+    """[s]."""
+    data: mujoco.MjData
+    """Poses and velocities at exactly this time; overwritten by the next frame."""
+    loads: Loads
+    """What the water does."""
+    centre_of_mass: NDArray[np.float64]
+    """Of the vehicle (3,) [m], world frame."""
+    attitude: NDArray[np.float64]
+    """Roll, pitch and yaw (3,) [rad] of the vehicle's root body."""
+    draft: float
+    """Depth of the lowest point of its hulls under the surface [m]; negative above it."""
+    elevation: float
+    """Height of the surface above the centre of mass [m], world frame."""
+    energy: Energy
+    """Mechanical energy."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Summary:
+    """What a run amounts to."""
+
+    scene: str
+    """Title of the scene."""
+    mass: float
+    """Of the vehicle [kg]."""
+    displacement: float
+    """Mass of water that its hulls displace when fully under water [kg]."""
+    net_weight: float
+    """Weight less greatest buoyancy [N]: positive sinks, negative floats."""
+    peak_draft: float
+    """Greatest depth of the lowest point [m]."""
+    final_draft: float
+    """Depth of the lowest point at the end [m]."""
+    cog_z_range: float
+    """Highest less lowest z of the centre of gravity over the last 2 s [m]."""
+    simulated_time: float
+    """[s]."""
+    wall_time: float
+    """Time that took, with whatever was done with the frames [s]."""
+    real_time_factor: float
+    """Simulated over wall time."""
+    contact_steps: int
+    """Steps in which the vehicle touched the bottom or another fixed thing."""
+    first_contact: float | None
+    """Time of the first touch [s]."""
+
+    def rows(self) -> list[tuple[str, str]]:
+        """Names and values for a table, with units."""
+        kind = "sinks" if self.net_weight > 0.0 else "floats"
+        touched = f"{self.contact_steps} steps, first at {self.first_contact:.2f} s" if self.contact_steps else "none"
+        return [
+            ("mass", f"{self.mass:.3f} kg"),
+            ("displacement, fully under water", f"{self.displacement:.3f} kg"),
+            ("net weight, fully under water", f"{self.net_weight:+.2f} N ({kind})"),
+            ("peak draft", f"{self.peak_draft:.3f} m"),
+            ("final draft", f"{self.final_draft:.3f} m"),
+            (f"CoG z range, last {LAST:g} s", f"{self.cog_z_range:.4f} m"),
+            ("simulated time", f"{self.simulated_time:.2f} s"),
+            ("real-time factor", f"{self.real_time_factor:.1f} x"),
+            ("contact with the bottom or walls", touched),
+        ]
+
+
+class Simulation:
+    """A scene, assembled and ready to run once.
+
+    Raises:
+        ModelError, MeshError, SceneError: see `assembly.assembled` and `Buoyancy`; also a vehicle
+            whose displacement is absurd for its mass.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.model, self.data = assembled(scene)
+        # a diverging simulation is told, not set back to the start
+        self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+        self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
+        self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag)
+        self.mass = float(self.model.body_mass[self.buoyancy.floating].sum())
+        self.displacement = float(scene.water.density * self.buoyancy.packed.volumes.sum())
+        self._check_scale()
+        self.root = int(self.model.body_rootid[self.buoyancy.bodies[0]])
+        """Index of the vehicle's root body."""
+        self._shown = mujoco.MjData(self.model)
+        self._state = np.empty(mujoco.mj_stateSize(self.model, mujoco.mjtState.mjSTATE_INTEGRATION))
+        self._heights: list[tuple[float, float]] = []
+        self._peak_draft, self._draft = -math.inf, math.nan
+        self._wall = 0.0
+        self._contact_steps = 0
+        self._first_contact: float | None = None
+        fixed = self.model.body_weldid[self.model.geom_bodyid] == 0
+        floating = np.isin(self.model.geom_bodyid, self.buoyancy.floating)
+        self._touches = fixed[:, None] & floating[None, :]
+        self._touches |= self._touches.T
+
+    @property
+    def steps(self) -> int:
+        """Timesteps of the whole run."""
+        return max(1, round(self.scene.duration / self.scene.timestep))
+
+    def frames(self) -> Iterator[Frame]:
+        """Run the scene; a frame at time 0, then at the record rate, and one at the end.
+
+        Raises:
+            DivergenceError: a position, velocity or acceleration left the finite numbers.
+        """
+        started = time.perf_counter()
+        yield self._frame()
+        recorded = 0
+        for step in range(1, self.steps + 1):
+            self.step()
+            # the small part forgives the rounding of time * rate
+            due = math.floor(step * self.scene.timestep * self.scene.record_rate + 1e-9)
+            if due > recorded or step == self.steps:
+                recorded = due
+                frame = self._frame()
+                self._wall = time.perf_counter() - started
+                yield frame
+        self._wall = time.perf_counter() - started
+
+    def step(self) -> None:
+        """One timestep with the water acting.
+
+        Raises:
+            DivergenceError: see `frames`.
+        """
+        with self.buoyancy.installed():
+            mujoco.mj_step(self.model, self.data)
+        self._check_finite()
+        pairs = self.data.contact.geom
+        if len(pairs) and self._touches[pairs[:, 0], pairs[:, 1]].any():
+            self._contact_steps += 1
+            if self._first_contact is None:
+                self._first_contact = float(self.data.time)
+
+    def summary(self) -> Summary:
+        """What came of the frames so far."""
+        end = self.data.time
+        late = [height for at, height in self._heights if at >= end - LAST - 1e-9]
+        gravity = -float(self.model.opt.gravity[2])
+        return Summary(
+            scene=self.scene.title,
+            mass=self.mass,
+            displacement=self.displacement,
+            net_weight=(self.mass - self.displacement) * gravity,
+            peak_draft=self._peak_draft,
+            final_draft=self._draft,
+            cog_z_range=max(late) - min(late) if late else math.nan,
+            simulated_time=float(end),
+            wall_time=self._wall,
+            real_time_factor=end / self._wall if self._wall else math.nan,
+            contact_steps=self._contact_steps,
+            first_contact=self._first_contact,
+        )
+
+    def _frame(self) -> Frame:
+        """The present, on data of its own: mj_forward on the running data would disturb its warm start."""
+        mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        mujoco.mj_setState(self.model, self._shown, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        with self.buoyancy.installed():
+            mujoco.mj_forward(self.model, self._shown)
+        data, water, now = self._shown, self.scene.water, float(self._shown.time)
+        loads = self.buoyancy.evaluate(data)
+        centre = self.buoyancy.centre_of_mass(data)
+        elevation = float(water.elevation(centre[0], centre[1], now))
+        lifted = water.depth(loads.hull.centroid, now)
+        energy = Energy(
+            kinetic=float(data.energy[1]),
+            potential=float(data.energy[0]),
+            buoyancy=float(np.nansum(loads.hull.force[:, 2] * lifted)),
+        )
+        self._draft = self._lowest(data, now)
+        self._peak_draft = max(self._peak_draft, self._draft)
+        self._heights.append((now, float(centre[2])))
+        attitude = _roll_pitch_yaw(data.xmat[self.root])
+        return Frame(now, data, loads, centre, attitude, self._draft, elevation, energy)
+
+    def _lowest(self, data: mujoco.MjData, now: float) -> float:
+        """Depth [m] of the deepest vertex of all hulls."""
+        deepest = -math.inf
+        for hull in self.buoyancy.hulls:
+            points = hull.mesh.vertices @ data.geom_xmat[hull.geom].reshape(3, 3).T + data.geom_xpos[hull.geom]
+            deepest = max(deepest, float(self.scene.water.depth(points, now).max()))
+        return deepest
+
+    def _check_scale(self) -> None:
+        """A slip of units gives a hull a thousand million times its volume."""
+        ratio = self.displacement / self.mass
+        if not PLAUSIBLE[0] <= ratio <= PLAUSIBLE[1]:
+            raise ModelError(
+                f"the vehicle weighs {self.mass:.4g} kg and would displace {self.displacement:.4g} kg of water; check the "
+                "scale of its meshes (a mesh drawn in millimetres wants scale='0.001 0.001 0.001')"
+            )
+        if self.model.opt.density > 0.0 and self.scene.drag is not None:
+            warnings.warn(
+                f"the vehicle sets <option density='{self.model.opt.density:g}'>: MuJoCo's own fluid drag acts as well "
+                "as ours; leave one out (drag = false in the scene)",
+                BuoyancyWarning,
+                stacklevel=3,
+            )
+
+    def _check_finite(self) -> None:
+        """Tell a diverged simulation by MuJoCo's own counters of bad values."""
+        for warning, quantity in (
+            (mujoco.mjtWarning.mjWARN_BADQPOS, "position"),
+            (mujoco.mjtWarning.mjWARN_BADQVEL, "velocity"),
+            (mujoco.mjtWarning.mjWARN_BADQACC, "acceleration"),
+        ):
+            told = self.data.warning[warning]
+            if told.number:
+                if quantity == "position":
+                    joint = int(np.searchsorted(self.model.jnt_qposadr, told.lastinfo, side="right")) - 1
+                    body = int(self.model.jnt_bodyid[joint])
+                else:
+                    body = int(self.model.dof_bodyid[told.lastinfo])
+                raise DivergenceError(
+                    f"the simulation diverged at {self.data.time:.4g} s: the {quantity} of body "
+                    f"'{body_name(self.model, body)}' is not a finite, sensible number; try a smaller timestep "
+                    f"(now {self.scene.timestep:g} s) or another integrator (now {self.scene.integrator})"
+                )
+
+
+def _roll_pitch_yaw(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles (3,) [rad] of a rotation (9,): yaw about z first, then pitch about y, then roll about x."""
+    r = rotation.reshape(3, 3)
+    return np.array([math.atan2(r[2, 1], r[2, 2]), -math.asin(max(-1.0, min(1.0, r[2, 0]))), math.atan2(r[1, 0], r[0, 0])])

@@ -1,0 +1,95 @@
+"""Make the OBJ meshes of the models that ship, from a few named dimensions [m].
+
+Run it from anywhere (`.venv/bin/python scripts/make_models.py`); the meshes it writes are committed.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from trimesh import Trimesh
+from trimesh.creation import box, cylinder, revolve
+
+MODELS = Path(__file__).resolve().parent.parent / "models"
+UPRIGHT_TO_X = trimesh.transformations.rotation_matrix(np.pi / 2.0, [0.0, 1.0, 0.0])
+
+# hourglass: two frusta of cones, neck to neck
+BASE_RADIUS, NECK_RADIUS, HALF_HEIGHT = 0.15, 0.04, 0.20
+RINGS, SECTIONS = 24, 96
+
+# AUV, every part about its own middle, see models/sauvc_auv/README.md
+HULL_RADIUS, HULL_CYLINDER, HULL_DOME = 0.090, 0.450, 0.075
+POD_RADIUS, POD_CYLINDER, POD_DOME = 0.057, 0.300, 0.030
+PLATE_LENGTH, PLATE_HEIGHT, PLATE_THICKNESS, PLATE_SPACING = 0.600, 0.352, 0.012, 0.470
+WINDOW_LENGTH, WINDOW_HEIGHT, WINDOW_AT = 0.230, 0.230, 0.135
+BAR_WIDTH, BAR_THICKNESS, BAR_AT = 0.030, 0.012, 0.100
+FOAM = 0.340, 0.090, 0.035
+DUCT_OUTER, DUCT_INNER, DUCT_LENGTH = 0.0485, 0.0380, 0.045
+MOTOR_RADIUS, MOTOR_LENGTH, STRUT = 0.020, 0.080, 0.006
+
+
+def hourglass() -> Trimesh:
+    """A solid of revolution with a neck, z up, its middle at the origin."""
+    z = np.linspace(-HALF_HEIGHT, HALF_HEIGHT, 2 * RINGS + 1)
+    radius = NECK_RADIUS + (BASE_RADIUS - NECK_RADIUS) * np.abs(z) / HALF_HEIGHT
+    profile = np.column_stack([np.r_[0.0, radius, 0.0], np.r_[z[0], z, z[-1]]])
+    return revolve(profile, sections=SECTIONS)
+
+
+def capped_tube(radius: float, length: float, dome: float) -> Trimesh:
+    """A cylinder along x with half an ellipsoid of revolution at each end."""
+    angle = np.linspace(0.0, np.pi / 2.0, 13)
+    end = np.column_stack([radius * np.cos(angle), 0.5 * length + dome * np.sin(angle)])
+    end[-1, 0] = 0.0
+    profile = np.vstack([end[::-1] * [1.0, -1.0], end])
+    return revolve(profile, sections=64).apply_transform(UPRIGHT_TO_X)
+
+
+def frame() -> Trimesh:
+    """Two upright plates with two windows each, joined by four bars across."""
+    parts = []
+    for side in (-0.5, 0.5):
+        plate = box([PLATE_LENGTH, PLATE_THICKNESS, PLATE_HEIGHT])
+        windows = [
+            box([WINDOW_LENGTH, 1.0, WINDOW_HEIGHT]).apply_translation([x, 0.0, 0.0]) for x in (-WINDOW_AT, WINDOW_AT)
+        ]
+        parts.append(plate.difference(windows).apply_translation([0.0, side * PLATE_SPACING, 0.0]))
+    for x in (-BAR_AT, BAR_AT):
+        for z in (-0.5, 0.5):
+            bar = box([BAR_WIDTH, PLATE_SPACING, BAR_THICKNESS])
+            parts.append(bar.apply_translation([x, 0.0, z * (PLATE_HEIGHT - BAR_THICKNESS)]))
+    return trimesh.boolean.union(parts)
+
+
+def thruster() -> Trimesh:
+    """A duct along z with a motor in it, on three struts."""
+    duct = trimesh.creation.annulus(DUCT_INNER, DUCT_OUTER, DUCT_LENGTH, sections=48)
+    motor = cylinder(MOTOR_RADIUS, MOTOR_LENGTH, sections=32)
+    struts = []
+    reach = 0.5 * (DUCT_INNER + DUCT_OUTER)
+    for turn in np.arange(3) * 2.0 * np.pi / 3.0:
+        strut = box([reach, STRUT, STRUT]).apply_translation([0.5 * reach, 0.0, 0.0])
+        struts.append(strut.apply_transform(trimesh.transformations.rotation_matrix(turn, [0.0, 0.0, 1.0])))
+    return trimesh.boolean.union([duct, motor, *struts])
+
+
+def main() -> None:
+    """Write every mesh, and say its volume."""
+    meshes = {
+        "hourglass/assets/hourglass": hourglass(),
+        "sauvc_auv/assets/pressure_hull": capped_tube(HULL_RADIUS, HULL_CYLINDER, HULL_DOME),
+        "sauvc_auv/assets/battery_pod": capped_tube(POD_RADIUS, POD_CYLINDER, POD_DOME),
+        "sauvc_auv/assets/frame": frame(),
+        "sauvc_auv/assets/foam": box(FOAM),
+        "sauvc_auv/assets/thruster": thruster(),
+    }
+    for name, mesh in meshes.items():
+        if not (mesh.is_watertight and mesh.volume > 0.0):
+            raise SystemExit(f"{name} is not watertight")
+        text = mesh.export(file_type="obj", include_normals=False, header=None, digits=7)
+        (MODELS / f"{name}.obj").write_text(text)
+        print(f"{name}: {len(mesh.faces)} triangles, {mesh.volume * 1000.0:.3f} l")
+
+
+if __name__ == "__main__":
+    main()
