@@ -199,4 +199,4 @@ def _callable(callback: Any) -> Callable[[mujoco.MjModel, mujoco.MjData], None] 
     """A callback as get_mjcb_control gives it, a Python function or a ctypes one, to be called from Python."""
     if hasattr(callback, "argtypes"):
         return lambda model, data: callback(model._address, data._address)
-    return callback  # type: ignore[no-any-return]
+    return callback

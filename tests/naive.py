@@ -1,0 +1,116 @@
+"""Slow, obvious twins of the fast code, and the naval architecture that tests need."""
+
+import numpy as np
+import trimesh
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+from buoyancy_mj import TriMesh, submerge
+
+
+def sliced(mesh, position, rotation, level=0.0):
+    """Volume and centroid of the capped slice under a level, by trimesh."""
+    solid = trimesh.Trimesh(mesh.vertices @ rotation.T + position, mesh.faces, process=False)
+    wet = solid.slice_plane([0.0, 0.0, level], [0.0, 0.0, -1.0], cap=True)
+    return wet.volume, wet.center_mass
+
+
+def elevation(rows, x, y, time):
+    """Sum of cosines, one by one."""
+    return sum(a * np.cos(kx * x + ky * y - w * time + phase) for a, kx, ky, w, phase, _ in rows)
+
+
+def columns(half_sizes, position, water, time, cells=400):
+    """Submerged volume and centroid of an upright box, one column of water at a time."""
+    x = position[0] + half_sizes[0] * (2.0 * (np.arange(cells) + 0.5) / cells - 1.0)
+    y = position[1] + half_sizes[1] * (2.0 * (np.arange(cells) + 0.5) / cells - 1.0)
+    xs, ys = np.meshgrid(x, y, indexing="ij")
+    bottom, top = position[2] - half_sizes[2], position[2] + half_sizes[2]
+    surface = np.clip(water.elevation(xs, ys, time), bottom, top)
+    heights = surface - bottom
+    cell = 4.0 * half_sizes[0] * half_sizes[1] / cells**2
+    moments = [(q * heights).sum() * cell for q in (1.0, xs, ys, 0.5 * (surface + bottom))]
+    return moments[0], np.array(moments[1:]) / moments[0]
+
+
+def floating(mesh, volume, rotation=None):
+    """The height at which `mesh` has a submerged volume."""
+    turn = np.eye(3) if rotation is None else rotation
+    z = mesh.vertices @ turn.T[:, 2]
+    return brentq(lambda h: submerge(mesh, (0, 0, h), turn).volume - volume, -z.max(), -z.min(), xtol=1e-14)
+
+
+def righting_arm(mesh, centre_of_gravity, volume, heel):
+    """GZ of a mesh heeled about x with its displacement kept; positive rights it."""
+    turn = roll(heel)
+    centroid = submerge(mesh, (0, 0, floating(mesh, volume, turn)), turn).centroid
+    return np.sign(heel) * ((turn @ centre_of_gravity)[1] - centroid[1])
+
+
+def metacentric_height(mesh, centre_of_gravity, volume, heel=1e-4):
+    """GM from the righting arm at a small heel."""
+    return righting_arm(mesh, centre_of_gravity, volume, heel) / abs(np.sin(heel))
+
+
+def roll(angle):
+    """Rotation about x."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+
+
+def period(potential, mass, low, high):
+    """Exact period of an oscillation between two turning points of a potential: 2 int dz / sqrt(2 (E - U) / m)."""
+    energy = 0.5 * (potential(low) + potential(high))
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+
+    def integrand(angle):
+        # z = middle + half sin(angle) takes the square-root singularities away
+        z = middle + half * np.sin(angle)
+        gap = max(energy - potential(z), 1e-300)
+        return half * np.cos(angle) / np.sqrt(2.0 * gap / mass)
+
+    return 2.0 * quad(integrand, -0.5 * np.pi, 0.5 * np.pi, limit=200)[0]
+
+
+def two_cones(radius, half_height, sections=512):
+    """An hourglass of two cones, tips together at the origin, scaled to the true volume."""
+    angle = np.arange(sections) * 2.0 * np.pi / sections
+    # a polygon of the circle's area
+    r = radius * np.sqrt(2.0 * np.pi / sections / np.sin(2.0 * np.pi / sections))
+    ring = np.column_stack([r * np.cos(angle), r * np.sin(angle)])
+    low = np.column_stack([ring, np.full(sections, -half_height)])
+    high = np.column_stack([ring, np.full(sections, half_height)])
+    vertices = np.vstack([low, high, [[0, 0, -half_height], [0, 0, half_height], [0, 0, 0]]])
+    i = np.arange(sections)
+    j = (i + 1) % sections
+    bottom, top, tip = 2 * sections, 2 * sections + 1, 2 * sections + 2
+    full = np.full(sections, 0)
+    faces = np.vstack(
+        [
+            np.column_stack([j, i, full + bottom]),
+            np.column_stack([i, j, full + tip]),
+            np.column_stack([sections + i, sections + j, full + top]),
+            np.column_stack([sections + j, sections + i, full + tip]),
+        ]
+    )
+    return TriMesh(vertices, faces)
+
+
+def cone(half_angle_radius, height, sections=512, apex_up=True):
+    """A cone with its base's area exact, base or apex at z = 0."""
+    angle = np.arange(sections) * 2.0 * np.pi / sections
+    r = half_angle_radius * np.sqrt(2.0 * np.pi / sections / np.sin(2.0 * np.pi / sections))
+    base, apex = (0.0, height) if apex_up else (height, 0.0)
+    ring = np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(sections, base)])
+    vertices = np.vstack([ring, [[0, 0, base], [0, 0, apex]]])
+    i = np.arange(sections)
+    j = (i + 1) % sections
+    faces = np.vstack(
+        [np.column_stack([j, i, np.full(sections, sections)]), np.column_stack([i, j, np.full(sections, sections + 1)])]
+    )
+    return TriMesh(vertices, faces if apex_up else faces[:, ::-1])
+
+
+def trimesh_hull(solid):
+    """A trimesh solid as a TriMesh."""
+    return TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))

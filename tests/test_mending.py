@@ -1,0 +1,100 @@
+import numpy as np
+import pytest
+import trimesh
+
+from buoyancy_mj import MeshError, mended, shapes
+from buoyancy_mj.kernels.rays import misenclosed
+
+BOX = shapes.box((1.0, 0.5, 0.3))
+SPHERE = trimesh.creation.icosphere(subdivisions=4)
+
+
+def test_a_good_mesh_is_left_as_it_is():
+    mesh, notices = mended(BOX.vertices, BOX.faces)
+    assert notices == []
+    assert mesh.volume == pytest.approx(1.2, rel=1e-14)
+
+
+def test_a_triangle_soup_is_welded():
+    soup = BOX.vertices[BOX.faces].reshape(-1, 3)
+    mesh, notices = mended(soup, np.arange(len(soup)).reshape(-1, 3))
+    assert len(mesh.vertices) == 8
+    assert notices == []
+
+
+def test_an_inside_out_mesh_is_turned_with_a_notice():
+    mesh, notices = mended(BOX.vertices, BOX.faces[:, ::-1], name="hull")
+    assert mesh.volume == pytest.approx(1.2)
+    assert notices == ["hull: it was inside out; its faces were turned outward"]
+
+
+def test_faces_wound_backwards_are_turned_with_a_notice():
+    faces = BOX.faces.copy()
+    faces[3] = faces[3][::-1]
+    mesh, notices = mended(BOX.vertices, faces, name="hull")
+    assert mesh.volume == pytest.approx(1.2)
+    assert notices == ["hull: 1 triangles were wound backwards and were turned"]
+
+
+def test_a_piece_that_is_inside_out_is_turned_and_a_cavity_is_not():
+    beside = shapes.box((0.1, 0.1, 0.1)).transformed(np.eye(3), (3.0, 0.0, 0.0))
+    inside = shapes.box((0.1, 0.1, 0.1))
+    for other, volume, told in ((beside, 1.2 + 0.008, "1 of its 2 pieces was inside out"), (inside, 1.2 - 0.008, None)):
+        vertices = np.vstack([BOX.vertices, other.vertices])
+        faces = np.vstack([BOX.faces, other.faces[:, ::-1] + 8])
+        mesh, notices = mended(vertices, faces)
+        assert mesh.volume == pytest.approx(volume, rel=1e-12)
+        assert (told in notices[0]) if told else (notices == [])
+
+
+def test_degenerate_and_repeated_triangles_go():
+    faces = np.vstack([BOX.faces, [[0, 0, 1]], BOX.faces[:1]])
+    mesh, _ = mended(BOX.vertices, faces)
+    assert len(mesh.faces) == 12
+
+
+def test_a_small_hole_is_closed_and_its_doubt_told():
+    mesh, notices = mended(SPHERE.vertices, SPHERE.faces[3:], name="float")
+    assert mesh.volume == pytest.approx(SPHERE.volume, rel=1e-3)
+    assert notices == ["float: 1 hole(s) with 9 edges put 0.000212 m^3 (0.01% of its volume) in doubt; they were closed"]
+
+
+def test_an_open_box_is_refused_with_the_volume_in_doubt():
+    with pytest.raises(
+        MeshError, match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, or leave"
+    ):
+        mended(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
+
+
+def test_a_mesh_that_crosses_itself_is_refused():
+    other = BOX.transformed(np.eye(3), (0.5, 0.0, 0.0))
+    with pytest.raises(MeshError, match=r"pair: it crosses itself: about .* is enclosed twice and 0 m\^3 inside out"):
+        mended(np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), name="pair")
+
+
+@pytest.mark.parametrize("scale", [1e6, 1e-6])
+def test_an_absurd_scale_is_refused(scale):
+    with pytest.raises(MeshError, match=r"hull: its longest side is 2e.* m, possible are 0.0001 to 10000 m; scale the mesh"):
+        mended(BOX.vertices * scale, BOX.faces, name="hull")
+
+
+def test_a_flat_mesh_is_refused():
+    with pytest.raises(MeshError, match="flat and encloses no volume"):
+        mended([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]])
+
+
+def test_only_degenerate_triangles_are_refused():
+    with pytest.raises(MeshError, match="all 1 triangles are degenerate"):
+        mended([[0, 0, 0], [1, 0, 0], [1, 0, 0]], [[0, 1, 2]])
+
+
+def test_rays_measure_what_two_boxes_enclose_twice():
+    other = BOX.transformed(np.eye(3), (0.5, 0.1, 0.05))
+    doubled, inverted = misenclosed(np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), 300)
+    assert doubled == pytest.approx(1.5 * 0.9 * 0.55, rel=0.01)
+    assert inverted == 0.0
+
+
+@pytest.mark.parametrize("solid", [BOX, shapes.cylinder(0.3, 1.0), shapes.capsule(0.3, 0.5), shapes.sphere(1.0)])
+def test_rays_find_no_fault_with_a_sound_solid(solid):
+    assert misenclosed(solid.vertices, solid.faces, 200) == (0.0, 0.0)

@@ -1,0 +1,147 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from buoyancy_mj import LevelOscillation, RegularWave, Water, WaterError, wavenumber
+from tests import naive
+
+
+@pytest.mark.parametrize(
+    ("period", "depth", "wavelength"),
+    [
+        # omega^2 = g k tanh(k h) solved elsewhere, g = 9.81, to the digits given
+        (8.0, 10.0, "70.898"),
+        (10.0, 20.0, "121.237"),
+        (4.0, math.inf, "24.981"),
+        (3.0, 1.2, "9.3685"),
+        (2.0, 1.6, "5.8549"),
+        (1.2, 0.4, "1.9362"),
+    ],
+)
+def test_wavelengths_follow_the_dispersion_relation(period, depth, wavelength):
+    digits = len(wavelength.partition(".")[2])
+    wave = RegularWave(0.1, period=period, depth=depth)
+    assert f"{wave.wavelength:.{digits}f}" == wavelength
+
+
+@given(st.floats(0.01, 50.0), st.floats(0.001, 1e4))
+def test_the_wavenumber_solves_the_dispersion_relation(omega, depth):
+    k = wavenumber(omega, depth)
+    assert 9.81 * k * math.tanh(k * depth) == pytest.approx(omega**2, rel=1e-10)
+
+
+@given(st.floats(0.05, 5.0), st.floats(0.1, 1e3))
+def test_frequency_period_and_wavelength_describe_one_wave(frequency, depth):
+    first = RegularWave(0.2, frequency=frequency, depth=depth)
+    for again in (
+        RegularWave(0.2, period=first.period, depth=depth),
+        RegularWave(0.2, wavelength=first.wavelength, depth=depth),
+    ):
+        assert again.rows == pytest.approx(first.rows, rel=1e-9)
+
+
+@pytest.mark.parametrize("given_", [{}, {"period": 2.0, "frequency": 0.5}, {"period": 2.0, "wavelength": 6.0}])
+def test_exactly_one_of_the_three_is_given(given_):
+    with pytest.raises(WaterError, match="give exactly one of frequency"):
+        RegularWave(0.1, **given_)
+
+
+@given(st.integers(0, 10**6))
+def test_elevation_is_the_sum_of_cosines(seed):
+    rng = np.random.default_rng(seed)
+    waves = [
+        RegularWave(rng.uniform(0, 1), period=rng.uniform(1, 9), direction=rng.uniform(-3, 3), phase=rng.uniform(-3, 3))
+    ]
+    waves += [LevelOscillation(rng.uniform(0, 1), rng.uniform(0.1, 1), rng.uniform(-3, 3))]
+    water = Water(level=rng.uniform(-2, 2), waves=waves)
+    x, y, t = rng.uniform(-50, 50, (3, 7))
+    assert water.elevation(x, y, t[0]) == pytest.approx(water.level + naive.elevation(water.rows, x, y, t[0]), abs=1e-12)
+
+
+def test_a_wave_runs_where_its_direction_points():
+    wave = Water(waves=RegularWave(1.0, period=2.0, direction=0.5))
+    speed = wave.waves[0].wavelength / 2.0
+    for time in (0.0, 0.3, 1.1):
+        crest = speed * time * np.array([math.cos(0.5), math.sin(0.5)])
+        assert wave.elevation(*crest, time) == pytest.approx(1.0, abs=1e-12)
+
+
+def test_a_level_oscillation_is_an_infinitely_long_wave():
+    level = Water(waves=LevelOscillation(0.3, 0.5, phase=0.7))
+    # shallow water is slow; so deep that the frequency alone makes it long
+    wave = Water(waves=RegularWave(0.3, frequency=0.5, phase=0.7, gravity=1e9))
+    assert level.elevation(3.0, 4.0, 1.3) == pytest.approx(wave.elevation(3.0, 4.0, 1.3), abs=1e-6)
+    assert level.velocity([3.0, 4.0, -1.0], 1.3)[2] == pytest.approx(wave.velocity([3.0, 4.0, -1.0], 1.3)[2], abs=1e-6)
+
+
+def test_the_level_of_the_source_paper_stays_within_its_bounds():
+    water = Water(waves=LevelOscillation(0.3, 0.5))
+    heights = np.array([float(water.elevation(0.0, 0.0, t)) for t in np.arange(0.0, 4.0, 0.01)])
+    assert heights.max() == pytest.approx(0.3, abs=1e-12)
+    assert heights.min() == pytest.approx(-0.3, abs=1e-12)
+    assert heights[:200] == pytest.approx(heights[200:], abs=1e-12)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 20.0, 1.5])
+def test_the_surface_moves_with_its_water(depth):
+    # linear kinematic condition: d eta / dt = w at the still level
+    water = Water(level=0.4, waves=[RegularWave(0.1, period=3.0, depth=depth, direction=0.3), LevelOscillation(0.2, 0.2)])
+    h = 1e-5
+    rate = (water.elevation(1.0, 2.0, 0.7 + h) - water.elevation(1.0, 2.0, 0.7 - h)) / (2.0 * h)
+    assert water.velocity([1.0, 2.0, 0.4], 0.7)[2] == pytest.approx(float(rate), rel=1e-8)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 5.0])
+def test_the_orbital_velocity_is_free_of_divergence_and_of_rotation(depth):
+    water = Water(waves=RegularWave(0.3, period=3.0, depth=depth, direction=0.8))
+    p, h = np.array([1.0, 2.0, -1.5]), 1e-4
+    gradient = np.array([(water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h) for e in np.eye(3)])
+    assert np.trace(gradient) == pytest.approx(0.0, abs=1e-8)
+    assert gradient == pytest.approx(gradient.T, abs=1e-8)
+
+
+def test_no_water_flows_through_the_bottom():
+    water = Water(waves=RegularWave(0.3, period=3.0, depth=2.0))
+    assert water.velocity([0.3, 0.0, -2.0], 0.4)[2] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_deep_water_moves_on_circles_that_shrink_by_exp_kz():
+    wave = RegularWave(0.3, period=3.0)
+    water, k = Water(waves=wave), 2.0 * math.pi / wave.wavelength
+    for z in (-0.5, -2.0):
+        speeds = [np.linalg.norm(water.velocity([0.0, 0.0, z], t)) for t in np.linspace(0, 3, 9)]
+        assert speeds == pytest.approx([0.3 * 2.0 * math.pi / 3.0 * math.exp(k * z)] * 9, rel=1e-12)
+
+
+def test_the_current_adds_to_the_waves():
+    still = Water(waves=RegularWave(0.3, period=3.0))
+    moving = Water(waves=RegularWave(0.3, period=3.0), current=(0.5, -0.2, 0.0))
+    p = np.array([[1.0, 2.0, -0.3], [0.0, 0.0, -5.0]])
+    assert moving.velocity(p, 0.7) - still.velocity(p, 0.7) == pytest.approx(np.tile([0.5, -0.2, 0.0], (2, 1)), abs=1e-15)
+
+
+def test_depth_is_positive_in_the_water():
+    assert Water(level=2.0).depth([[0, 0, 1.5], [0, 0, 2.5]], 0.0) == pytest.approx([0.5, -0.5])
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Water(density=0.0), "density is 0.0; it must be above 0"),
+        (lambda: Water(density=math.nan), "density is nan; it must be a finite number"),
+        (lambda: Water(level=math.inf), "level is inf; it must be a finite number"),
+        (lambda: Water(density="salt"), "density is 'salt'; it must be a finite number"),
+        (lambda: Water(waves=(3,)), "3 is no wave; possible are RegularWave and LevelOscillation"),
+        (lambda: Water(current=(1.0, 2.0)), r"current is \(1.0, 2.0\); it must be three finite numbers"),
+        (lambda: RegularWave(-0.1, period=1.0), "amplitude is -0.1; it must be at least 0"),
+        (lambda: RegularWave(0.1, period=-1.0), "period is -1.0; it must be above 0"),
+        (lambda: RegularWave(0.1, period=1.0, depth=0.0), "wave depth is 0.0 m; it must be above 0"),
+        (lambda: LevelOscillation(0.1, 0.0), "frequency is 0.0; it must be above 0"),
+    ],
+)
+def test_impossible_water_is_told(make, message):
+    with pytest.raises(WaterError, match=message):
+        make()
