@@ -93,7 +93,7 @@ class Scene:
             if not 0.0 < value <= limit:
                 raise SceneError(f"{name} is {value:g}; it must be above 0 and at most {limit:g}")
         if self.integrator.lower() not in INTEGRATORS:
-            raise SceneError(f"unknown integrator '{self.integrator}'; {choices(self.integrator, INTEGRATORS)}")
+            raise SceneError(f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}")
 
 
 def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:

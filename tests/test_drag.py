@@ -1,0 +1,102 @@
+import mujoco
+import numpy as np
+import pytest
+
+from buoyancy_mj import Buoyancy, Drag, ModelError, Water
+from buoyancy_mj.drag import estimated
+from buoyancy_mj.geoms import displacing_hulls
+
+
+def damping(geom, drag=None, extra="", density=1000.0):
+    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody><body><freejoint/>{geom}{extra}</body></worldbody></mujoco>")
+    return estimated(drag or Drag(), model, displacing_hulls(model), density)
+
+
+def coefficients(geom, areas):
+    """C along each axis, from 1/2 rho C A."""
+    return damping(geom).quadratic[0, :3] / (0.5 * 1000.0 * np.array(areas))
+
+
+def test_a_cube_has_the_coefficient_that_hoerner_measured():
+    assert coefficients('<geom type="box" size=".2 .2 .2"/>', [0.16] * 3) == pytest.approx([1.05] * 3, rel=1e-2)
+
+
+def test_a_sphere_is_near_the_coefficient_that_hoerner_measured():
+    assert coefficients('<geom type="sphere" size=".2"/>', [np.pi * 0.04] * 3) == pytest.approx([0.47] * 3, rel=0.15)
+
+
+def test_a_short_cylinder_across_the_flow_is_near_whites_table():
+    # L / D = 2: 0.68
+    across = coefficients('<geom type="cylinder" size=".2 .4"/>', [0.32, 0.32, np.pi * 0.04])[0]
+    assert across == pytest.approx(0.68, rel=0.05)
+
+
+def test_drag_grows_with_the_density_of_the_water():
+    geom = '<geom type="box" size=".2 .2 .2"/>'
+    assert damping(geom, density=1025.0).quadratic == pytest.approx(1.025 * damping(geom).quadratic)
+
+
+def test_a_hidden_part_adds_nothing_to_the_silhouette():
+    geom = '<geom type="box" size=".5 .2 .2"/>'
+    behind = '<geom type="box" size=".1 .1 .1" pos=".7 0 0"/>'
+    assert damping(geom, extra=behind).quadratic[0, 0] == pytest.approx(damping(geom).quadratic[0, 0], rel=0.02)
+
+
+def test_turning_a_plate_meets_the_flow_at_each_strips_own_speed():
+    # 1/2 rho C int |x|^3 dA over a plate 2 a long and 2 b wide: 1/2 rho C b a^4, from its flat sides
+    a, b = 0.5, 0.2
+    about_y = damping(f'<geom type="box" size="{a} {b} .001"/>').quadratic[0, 4]
+    assert about_y == pytest.approx(0.5 * 1000.0 * 1.05 * b * a**4, rel=0.02)
+
+
+def test_linear_and_quadratic_parts_are_equal_at_the_stated_froude_number():
+    d = damping('<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.07))
+    speed = 0.07 * np.sqrt(9.81 * 1.0)
+    assert d.linear[0, :3] == pytest.approx(d.quadratic[0, :3] * speed)
+    assert damping('<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.0)).linear == pytest.approx(0.0)
+
+
+BOX = """<mujoco><worldbody><body pos="0 0 -2"><freejoint/>
+<geom type="box" size=".3 .2 .1" mass="24"/></body></worldbody></mujoco>"""
+
+
+def test_the_force_on_a_moving_box_is_half_rho_c_a_v_squared():
+    model = mujoco.MjModel.from_xml_string(BOX)
+    data = mujoco.MjData(model)
+    data.qvel[0] = 1.5
+    mujoco.mj_forward(model, data)
+    rows = Buoyancy(model, drag=Drag(linear_froude=0.0)).evaluate(data).by_cause["drag"]
+    assert rows[1, :3] == pytest.approx([-0.5 * 1000.0 * 1.05 * 0.08 * 1.5**2, 0.0, 0.0], rel=1e-2)
+
+
+def test_drag_scales_with_what_is_wet_and_acts_at_its_centroid():
+    model = mujoco.MjModel.from_xml_string(BOX)
+    forces = []
+    for z in (-2.0, 0.0):
+        data = mujoco.MjData(model)
+        data.qpos[2], data.qvel[0] = z, 1.0
+        mujoco.mj_forward(model, data)
+        forces.append(Buoyancy(model).evaluate(data).by_cause["drag"][1])
+    assert forces[1][0] == pytest.approx(0.5 * forces[0][0])
+    # 5 cm below the centre of mass
+    assert forces[1][4] == pytest.approx(-0.05 * forces[1][0])
+
+
+def test_a_body_at_rest_in_a_current_is_pushed_along():
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><worldbody><body pos="0 0 -2"><freejoint/><geom size=".1" mass="4"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    still, moving = (Buoyancy(model, Water(current=c)).evaluate(data).by_cause["drag"][1] for c in ((0, 0, 0), (0, 0.5, 0)))
+    assert still == pytest.approx(0.0)
+    assert moving[1] > 0.0
+    assert moving[[0, 2]] == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("field", "value"), [("coefficient", -1.0), ("linear_froude", float("nan")), ("coefficient", "big")]
+)
+def test_impossible_drag_is_told(field, value):
+    with pytest.raises(ModelError, match=f"drag {field} is .*; it must be a finite number of at least 0"):
+        Drag(**{field: value})

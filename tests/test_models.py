@@ -1,0 +1,175 @@
+"""The contract of a model folder, and what the two vehicles promise."""
+
+import importlib.util
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+
+from buoyancy_mj import Buoyancy, catalog, submerge
+from buoyancy_mj.geoms import displacing_hulls
+
+MODELS = catalog.models()
+
+
+def loaded(name):
+    return mujoco.MjModel.from_xml_path(str(MODELS[name]))
+
+
+@pytest.mark.parametrize("name", sorted(MODELS))
+def test_a_model_folder_keeps_the_contract(name):
+    folder = MODELS[name].parent
+    assert {path.name for path in folder.iterdir()} == {f"{name}.xml", "scene.xml", "assets", "README.md", "LICENSE"}
+    assert "where each mass and dimension comes from" in (folder / "README.md").read_text().lower()
+    assert len(catalog.summary(MODELS[name])) > 20
+
+
+@pytest.mark.parametrize("name", sorted(MODELS))
+@pytest.mark.parametrize("file", ["{}.xml", "scene.xml"])
+def test_a_model_runs_for_a_second_without_a_warning(name, file):
+    model = mujoco.MjModel.from_xml_path(str(MODELS[name].parent / file.format(name)))
+    data = mujoco.MjData(model)
+    with Buoyancy(model).installed():
+        while data.time < 1.0:
+            mujoco.mj_step(model, data)
+    assert not any(data.warning[i].number for i in range(mujoco.mjtWarning.mjNWARNING))
+
+
+@pytest.mark.parametrize("name", sorted(MODELS))
+def test_the_vehicle_file_is_the_vehicle_alone(name):
+    model = loaded(name)
+    assert model.nlight == 0
+    assert (model.body_weldid[model.geom_bodyid] > 0).all()
+    assert model.jnt_type[0] == mujoco.mjtJoint.mjJNT_FREE
+    assert model.nkey > 0
+
+
+@pytest.mark.parametrize("name", sorted(MODELS))
+def test_every_keyframe_can_be_run(name):
+    model = loaded(name)
+    for key in range(model.nkey):
+        data = mujoco.MjData(model)
+        mujoco.mj_resetDataKeyframe(model, data, key)
+        with Buoyancy(model).installed():
+            for _ in range(100):
+                mujoco.mj_step(model, data)
+        assert np.isfinite(data.qpos).all()
+
+
+def test_the_meshes_are_what_the_script_makes():
+    spec = importlib.util.spec_from_file_location("make_models", Path(__file__).parent.parent / "scripts" / "make_models.py")
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    made = {
+        "hourglass/assets/hourglass": script.hourglass(),
+        "sauvc_auv/assets/pressure_hull": script.capped_tube(script.HULL_RADIUS, script.HULL_CYLINDER, script.HULL_DOME),
+        "sauvc_auv/assets/battery_pod": script.capped_tube(script.POD_RADIUS, script.POD_CYLINDER, script.POD_DOME),
+        "sauvc_auv/assets/frame": script.frame(),
+        "sauvc_auv/assets/thruster": script.thruster(),
+    }
+    for name, mesh in made.items():
+        committed = trimesh.load_mesh(script.MODELS / f"{name}.obj")
+        assert committed.is_watertight
+        assert committed.volume == pytest.approx(mesh.volume, rel=1e-5)
+        assert committed.extents == pytest.approx(mesh.extents, abs=1e-6)
+
+
+# hourglass ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("draft", [0.05, 0.1, 0.2, 0.25, 0.35, 0.4])
+def test_the_hourglass_has_the_volume_of_its_two_frusta(draft):
+    base, neck, half = 0.15, 0.04, 0.2
+    # radius falls from base to neck over the first half, and the upper half mirrors it
+    slope = (base - neck) / half
+
+    def frustum(z):
+        r = base - slope * z
+        return np.pi * z / 3.0 * (base**2 + base * r + r**2)
+
+    whole = frustum(half)
+    volume = frustum(draft) if draft <= half else 2.0 * whole - frustum(2.0 * half - draft)
+    mesh = displacing_hulls(loaded("hourglass"))[0].mesh
+    # a circle of 96 facets has 0.9993 of its area
+    facets = 96.0 / (2.0 * np.pi) * np.sin(2.0 * np.pi / 96.0)
+    assert submerge(mesh, (0, 0, half - draft)).volume == pytest.approx(facets * volume, rel=1e-5)
+
+
+def test_the_hourglass_has_a_neck_that_its_convex_hull_fills():
+    mesh = displacing_hulls(loaded("hourglass"))[0].mesh
+    hull = trimesh.convex.convex_hull(mesh.vertices)
+    assert hull.volume / mesh.volume > 1.8
+
+
+# the AUV --------------------------------------------------------------------------------------------
+
+
+def auv_under_water():
+    model = loaded("sauvc_auv")
+    data = mujoco.MjData(model)
+    data.qpos[2] = -2.0
+    mujoco.mj_forward(model, data)
+    buoyancy = Buoyancy(model)
+    return model, data, buoyancy, buoyancy.evaluate(data)
+
+
+def test_the_auv_keeps_the_rules_of_sauvc():
+    # bonus of the SAUVC rulebook 2026 v6.1.0: below 70 x 50 x 50 cm and 42 kg
+    model, data, buoyancy, _ = auv_under_water()
+    points = np.concatenate(
+        [h.mesh.vertices @ data.geom_xmat[h.geom].reshape(3, 3).T + data.geom_xpos[h.geom] for h in buoyancy.hulls]
+    )
+    assert (np.ptp(points, axis=0) < [0.7, 0.5, 0.5]).all()
+    assert model.body_mass.sum() == pytest.approx(24.0, abs=0.5)
+
+
+def test_the_auv_is_slightly_buoyant_and_stable():
+    model, data, _, loads = auv_under_water()
+    surplus = float(loads.total.volume) * 1000.0 - model.body_mass.sum()
+    assert 0.5 < surplus < 1.2
+    cg = data.subtree_com[1]
+    assert loads.total.centroid[2] - cg[2] == pytest.approx(0.03, abs=0.003)
+    assert loads.total.centroid[:2] == pytest.approx(cg[:2], abs=1e-4)
+
+
+def test_no_two_parts_of_the_auv_overlap():
+    # BuoyancyWarning is an error here
+    assert len(displacing_hulls(loaded("sauvc_auv"))) == 15
+
+
+def test_the_thrusters_span_all_six_directions():
+    model = loaded("sauvc_auv")
+    data = mujoco.MjData(model)
+    rows = []
+    for i in range(model.nu):
+        data.ctrl[:] = 0.0
+        data.ctrl[i] = 10.0
+        mujoco.mj_forward(model, data)
+        rows.append(data.qfrc_actuator[:6].copy())
+    rows = np.array(rows)
+    assert model.nu == 8
+    assert np.linalg.matrix_rank(rows, tol=0.1) == 6
+    # four vertical, four at 45 degrees in the horizontal plane
+    assert np.abs(rows[:4, 2]) == pytest.approx([10.0] * 4)
+    assert np.abs(rows[4:, :2]) == pytest.approx(np.full((4, 2), 10.0 / np.sqrt(2.0)))
+
+
+def test_the_ahead_keyframe_drives_ahead():
+    model = loaded("sauvc_auv")
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("ahead").id)
+    with Buoyancy(model).installed():
+        while data.time < 3.0:
+            mujoco.mj_step(model, data)
+    assert data.qpos[0] > 0.5
+    assert abs(data.qpos[1]) < 1e-3
+
+
+def test_the_auv_senses_its_depth_and_attitude():
+    _, data, _, _ = auv_under_water()
+    assert data.sensor("depth").data[2] == pytest.approx(-2.0 + 0.04)
+    assert data.sensor("attitude").data == pytest.approx([1, 0, 0, 0], abs=1e-9)
+    assert data.sensor("gyro").data == pytest.approx(np.zeros(3), abs=1e-9)
+    assert data.sensor("accelerometer").data[2] == pytest.approx(data.qacc[2] + 9.81, abs=1e-6)

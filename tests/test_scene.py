@@ -1,0 +1,389 @@
+import math
+import re
+import textwrap
+
+import mujoco
+import numpy as np
+import pytest
+
+from buoyancy_mj import (
+    BuoyancyWarning,
+    DivergenceError,
+    Drag,
+    LevelOscillation,
+    ModelError,
+    RegularWave,
+    SceneError,
+    Simulation,
+    catalog,
+    read_scene,
+)
+
+SCENE = """
+title = "A box"
+vehicle = "box.xml"
+duration = 0.5
+
+[water]
+density = 1025.0
+[[water.waves]]
+amplitude = 0.1
+period = 2.0
+[[water.waves]]
+kind = "level"
+amplitude = 0.2
+frequency = 0.1
+"""
+BOX = """<mujoco model="box"><worldbody><body name="box">{joint}<geom name="box" type="box" size=".2 .15 .05" mass="4"/>
+{more}</body></worldbody>{rest}</mujoco>"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    (tmp_path / "box.xml").write_text(BOX.format(joint="<freejoint/>", more="", rest=""))
+    (tmp_path / "scene.toml").write_text(SCENE)
+    return tmp_path
+
+
+def simulation_of(folder, xml, *settings):
+    (folder / "box.xml").write_text(textwrap.dedent(xml))
+    return Simulation(read_scene(folder / "scene.toml", settings))
+
+
+# reading --------------------------------------------------------------------------------------------
+
+
+def test_a_scene_is_read_into_what_it_says(folder):
+    scene = read_scene(folder / "scene.toml")
+    assert scene.water.density == 1025.0
+    assert scene.water.waves == (RegularWave(0.1, period=2.0), LevelOscillation(0.2, 0.1))
+    assert scene.drag == Drag()
+    assert (scene.duration, scene.timestep, scene.record_rate) == (0.5, 0.01, 60.0)
+
+
+@pytest.mark.parametrize(
+    ("setting", "look"),
+    [
+        ("duration=2", lambda s: s.duration == 2.0),
+        ("water.level=0.5", lambda s: s.water.level == 0.5),
+        ("water.current=[0.1, 0, 0]", lambda s: s.water.current == (0.1, 0.0, 0.0)),
+        ("water.waves.0.amplitude=0.3", lambda s: s.water.waves[0].amplitude == 0.3),
+        ("water.waves=[]", lambda s: s.water.waves == ()),
+        ("start.position=[1, 2, 3]", lambda s: s.start.position == (1.0, 2.0, 3.0)),
+        ("start.roll=0.5", lambda s: s.start.roll == 0.5),
+        ("drag=false", lambda s: s.drag is None),
+        ("drag.coefficient=0.8", lambda s: s.drag == Drag(coefficient=0.8)),
+        ("integrator=RK4", lambda s: s.integrator == "RK4"),
+        ('geoms=["hull*", "group:2"]', lambda s: s.geoms == ("hull*", "group:2")),
+        ("vehicle=sauvc_auv", lambda s: s.vehicle == "sauvc_auv"),
+    ],
+)
+def test_any_field_can_be_set(folder, setting, look):
+    assert look(read_scene(folder / "scene.toml", [setting]))
+
+
+@pytest.mark.parametrize(
+    ("setting", "message"),
+    [
+        ("durations=2", "unknown key 'durations'; did you mean 'duration'? possible: drag, duration, environment"),
+        ("water.densty=2", "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level"),
+        ("water.waves.0.kind=choppy", "water.waves.0: unknown kind 'choppy'; possible: level, regular"),
+        ("water.waves.5.amplitude=1", "cannot set 'water.waves.5': the list has 2 entries, counted from 0"),
+        ("water.waves.0.amplitude=nan", "water.waves.0: amplitude is nan; needed is a number"),
+        ("water.waves.0.frequency=1", "give exactly one of frequency [Hz], period [s], wavelength [m]"),
+        ("water.waves=3", "water: waves is 3; needed is a list of tables"),
+        ("water=3", "water is 3; needed is a table"),
+        ("water.density=-1", "density is -1.0; it must be above 0"),
+        ("duration=0", "duration is 0; it must be above 0"),
+        ("duration=long", "duration is 'long'; needed is a number"),
+        ("timestep=true", "timestep is True; needed is a number"),
+        ("title=3", "title is 3; needed is a text in quotes"),
+        ("integrator=RK5", "unknown integrator 'RK5'; did you mean 'rk4'? possible: discrete, euler, implicit"),
+        ("start.position=[1, 2]", "start: position is [1, 2]; needed is a list of 3 numbers"),
+        ("start.position=[1, 2, nan]", "start: position is nan; needed is a number"),
+        ("start.roll=inf", "every number must be finite"),
+        ("drag.coefficient=-1", "drag coefficient is -1.0; it must be a finite number of at least 0"),
+        ("geoms=hull", "geoms is 'hull'; needed is a list of words"),
+        ("duration", "'duration' is no setting; write KEY=VALUE"),
+        ("title.x=3", "cannot set 'title.x': 'title' is 'A box', no table"),
+    ],
+)
+def test_a_setting_that_makes_no_sense_is_told(folder, setting, message):
+    with pytest.raises(SceneError, match=re.escape(message)):
+        read_scene(folder / "scene.toml", [setting])
+
+
+def test_a_missing_key_is_told(folder):
+    (folder / "scene.toml").write_text('title = "x"')
+    with pytest.raises(SceneError, match="scene 'scene': 'vehicle' is missing; needed is a text in quotes"):
+        read_scene(folder / "scene.toml")
+
+
+def test_a_file_that_is_no_toml_is_told(folder):
+    (folder / "scene.toml").write_text("title = ")
+    with pytest.raises(SceneError, match="is no valid TOML"):
+        read_scene(folder / "scene.toml")
+    with pytest.raises(SceneError, match="cannot read scene"):
+        read_scene(folder / "nothing.toml")
+
+
+def test_an_unknown_scene_is_told_with_the_nearest():
+    with pytest.raises(
+        SceneError, match=r"there is no scene 'auv_wave', .*; did you mean 'auv_waves'\? possible: auv_drop_still"
+    ):
+        catalog.scene_path("auv_wave")
+    with pytest.raises(SceneError, match="scene '/' is a folder"):
+        catalog.scene_path("/")
+
+
+# vehicles -------------------------------------------------------------------------------------------
+
+
+def test_a_vehicle_is_found_beside_its_scene(folder, monkeypatch, tmp_path_factory):
+    monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))
+    assert Simulation(read_scene(folder / "scene.toml")).mass == pytest.approx(4.0)
+
+
+def test_a_missing_vehicle_is_told(folder):
+    with pytest.raises(
+        ModelError, match=r"there is no vehicle 'bax.xml', neither a file nor one that ships; possible: hourglass"
+    ):
+        Simulation(read_scene(folder / "scene.toml", ["vehicle=bax.xml"]))
+
+
+def test_mujocos_own_message_is_kept(folder):
+    (folder / "box.xml").write_text("<mujoco><worldbody><bdy/></worldbody></mujoco>")
+    with pytest.raises(ModelError, match=r"MuJoCo cannot read '.*box.xml': .*unrecognized element"):
+        Simulation(read_scene(folder / "scene.toml"))
+
+
+def test_a_vehicle_without_a_free_joint_gets_one(folder):
+    simulation = simulation_of(folder, BOX.format(joint="", more="", rest=""), "start.position=[0, 0, 1]")
+    assert simulation.model.jnt_type.tolist() == [mujoco.mjtJoint.mjJNT_FREE]
+    assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 1.0])
+
+
+def test_keyframes_survive_the_free_joint(folder):
+    arm = '<body pos=".3 0 0"><joint name="j"/><geom size=".05"/></body>'
+    rest = '<keyframe><key name="bent" qpos=".7"/></keyframe>'
+    simulation = simulation_of(
+        folder, BOX.format(joint="", more=arm, rest=rest), "start.keyframe=bent", "start.position=[1, 2, 3]"
+    )
+    assert simulation.data.qpos == pytest.approx([1, 2, 3, 1, 0, 0, 0, 0.7])
+
+
+def test_an_unknown_keyframe_is_told(folder):
+    with pytest.raises(SceneError, match="the vehicle has no keyframe 'bend'; possible: nothing"):
+        simulation_of(folder, BOX.format(joint="", more="", rest=""), "start.keyframe=bend")
+
+
+def test_a_vehicle_on_joints_of_its_own_keeps_them(folder):
+    simulation = simulation_of(folder, BOX.format(joint='<joint type="slide" axis="0 0 1"/>', more="", rest=""))
+    assert simulation.model.nv == 1
+    for _ in simulation.frames():
+        pass
+
+
+def test_two_bodies_without_joints_are_refused(folder):
+    bodies = "<body name='a'><geom size='.1'/></body><body name='b'><geom size='.1'/></body>"
+    two = f"<mujoco><worldbody>{bodies}</worldbody></mujoco>"
+    with pytest.raises(
+        ModelError, match=r"has 2 bodies without a joint \('a', 'b'\); give the one that floats a <freejoint/>"
+    ):
+        simulation_of(folder, two)
+
+
+def test_geoms_without_a_body_are_refused(folder):
+    with pytest.raises(ModelError, match="has no body that could float; put the vehicle's geoms into a <body>"):
+        simulation_of(folder, "<mujoco><worldbody><geom size='.1'/></worldbody></mujoco>")
+
+
+def test_a_ground_plane_at_the_water_level_is_left_out_with_a_notice(folder):
+    xml = BOX.format(joint="", more="", rest="").replace(
+        "<worldbody>", '<worldbody><geom name="ground" type="plane" size="1 1 1"/>'
+    )
+    with pytest.warns(
+        BuoyancyWarning, match="ground plane 'ground' at z = 0 m would keep out the water at 0 m and was left out"
+    ):
+        simulation = simulation_of(folder, xml)
+    assert simulation.model.ngeom == 1
+
+
+def test_a_sea_bed_stays(folder):
+    xml = BOX.format(joint="", more="", rest="").replace(
+        "<worldbody>", '<worldbody><geom name="bed" type="plane" size="1 1 1" pos="0 0 -2"/>'
+    )
+    assert simulation_of(folder, xml).model.ngeom == 2
+
+
+def test_a_urdf_floats_too(folder):
+    (folder / "box.urdf").write_text(
+        """<robot name="r"><link name="base"><inertial><mass value="4"/>
+        <inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/></inertial>
+        <collision><geometry><box size=".4 .3 .1"/></geometry></collision></link></robot>"""
+    )
+    simulation = Simulation(
+        read_scene(folder / "scene.toml", ["vehicle=box.urdf", "water.waves=[]", "duration=30", "water.density=1000"])
+    )
+    *_, last = simulation.frames()
+    assert last.draft == pytest.approx(0.1 / 3.0, abs=1e-3)
+
+
+def test_the_environment_is_attached_under_its_own_prefix(folder):
+    (folder / "pool.xml").write_text(
+        """<mujoco><worldbody><geom name="box" type="plane" size="1 1 1" pos="0 0 -1"/>
+        <body name="buoy" pos="3 0 0"><freejoint/><geom name="buoy" size=".1" mass="1"/></body></worldbody></mujoco>"""
+    )
+    simulation = Simulation(read_scene(folder / "scene.toml", ["environment=pool.xml", "start.position=[0, 0, 0.3]"]))
+    names = [simulation.model.geom(i).name for i in range(simulation.model.ngeom)]
+    assert set(names) == {"box", "environment/box", "environment/buoy"}
+    # the start is the vehicle's; the buoy stays and floats
+    assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 0.3])
+    assert simulation.data.qpos[7:10] == pytest.approx([3.0, 0.0, 0.0])
+    assert [hull.name for hull in simulation.buoyancy.hulls] == ["box", "environment/buoy"]
+
+
+def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
+    xml = BOX.format(joint="", more="", rest="").replace('size=".2 .15 .05"', 'size="200 100 100"')
+    with pytest.raises(
+        ModelError, match=r"weighs 4 kg and would displace 1.64e\+10 kg of water; check the scale of its meshes"
+    ):
+        simulation_of(folder, xml)
+
+
+def test_mujocos_own_fluid_is_told_as_double_drag(folder):
+    xml = BOX.format(joint="", more="", rest="<option density='1000'/>")
+    with pytest.warns(BuoyancyWarning, match=r"<option density='1000'>: MuJoCo's own fluid drag acts as well as ours"):
+        simulation_of(folder, xml)
+
+
+# running --------------------------------------------------------------------------------------------
+
+
+def test_frames_come_at_the_record_rate(folder):
+    simulation = Simulation(read_scene(folder / "scene.toml", ["duration=1", "record_rate=20"]))
+    times = [frame.time for frame in simulation.frames()]
+    assert times == pytest.approx(np.linspace(0.0, 1.0, 21), abs=1e-9)
+
+
+def test_a_frame_holds_the_state_at_its_own_time(folder):
+    simulation = Simulation(
+        read_scene(folder / "scene.toml", ["start.position=[0, 0, 1]", "duration=0.2", "water.waves=[]"])
+    )
+    for frame in simulation.frames():
+        # symplectic free fall: z = z0 - g h^2 n (n + 1) / 2
+        n = round(frame.time / 0.01)
+        assert frame.data.xpos[1, 2] == pytest.approx(1.0 - 9.81e-4 * n * (n + 1) / 2.0, abs=1e-9)
+        assert frame.draft == pytest.approx(0.05 - frame.data.xpos[1, 2], abs=1e-9)
+
+
+def test_the_frames_attitude_is_roll_pitch_yaw(folder):
+    scene = read_scene(folder / "scene.toml", ["start.roll=0.3", "start.pitch=-0.2", "start.yaw=1.1"])
+    first = next(iter(Simulation(scene).frames()))
+    assert first.attitude == pytest.approx([0.3, -0.2, 1.1])
+
+
+def test_energy_of_a_frame_is_kept_without_drag(folder):
+    settings = [
+        "drag=false",
+        "water.waves=[]",
+        "start.position=[0,0,0.2]",
+        "start.roll=0.4",
+        "duration=4",
+        "integrator=RK4",
+        "timestep=0.002",
+    ]
+    totals = [frame.energy.total for frame in Simulation(read_scene(folder / "scene.toml", settings)).frames()]
+    assert np.ptp(totals) < 1e-3 * 4.0 * 9.81 * 0.2
+
+
+def test_the_summary_says_what_happened(folder):
+    settings = ["water.waves=[]", "duration=20", "water.density=1000"]
+    simulation = Simulation(read_scene(folder / "scene.toml", settings))
+    list(simulation.frames())
+    summary = simulation.summary()
+    assert summary.mass == pytest.approx(4.0)
+    assert summary.displacement == pytest.approx(12.0)
+    assert summary.net_weight == pytest.approx(-8.0 * 9.81)
+    assert summary.final_draft == pytest.approx(0.1 / 3.0, abs=1e-3)
+    assert summary.cog_z_range < 0.01
+    assert summary.simulated_time == pytest.approx(20.0)
+    assert summary.real_time_factor > 1.0
+    assert (summary.contact_steps, summary.first_contact) == (0, None)
+
+
+def test_touching_the_bottom_is_counted(folder):
+    (folder / "pool.xml").write_text(
+        '<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 -.3"/></worldbody></mujoco>'
+    )
+    settings = ["environment=pool.xml", "start.position=[0,0,-0.24]", "start.velocity=[0,0,-2]"]
+    simulation = Simulation(read_scene(folder / "scene.toml", settings))
+    list(simulation.frames())
+    assert simulation.summary().contact_steps > 0
+    assert simulation.summary().first_contact == pytest.approx(0.01, abs=0.011)
+
+
+def test_a_diverging_simulation_is_told_with_time_body_and_quantity(folder, capfd):
+    (folder / "box.xml").write_text(BOX.format(joint="<freejoint/>", more="", rest=""))
+    simulation = Simulation(read_scene(folder / "scene.toml"))
+    frames = simulation.frames()
+    next(frames)
+    simulation.data.qvel[2] = 1e12
+    with pytest.raises(
+        DivergenceError, match=r"the simulation diverged at .* s: the velocity of body 'box' is not a finite"
+    ):
+        list(frames)
+
+
+def test_a_steep_simulation_that_runs_away_is_told(folder):
+    # an undamped explicit step far beyond its stability limit
+    simulation = simulation_of(
+        folder,
+        BOX.format(joint='<joint type="slide" axis="0 0 1" stiffness="1e9"/>', more="", rest=""),
+        "integrator=Euler",
+        "duration=5",
+        "start.position=[0,0,0]",
+    )
+    simulation.data.qpos[0] = 0.1
+    with pytest.raises(DivergenceError, match=r"of body 'box' is not a finite, sensible number; try a smaller timestep"):
+        list(simulation.frames())
+
+
+@pytest.mark.parametrize("name", sorted(catalog.scenes()))
+def test_every_scene_that_ships_runs(name):
+    simulation = Simulation(read_scene(catalog.scenes()[name]))
+    frames = [(frame.time, *frame.centre_of_mass, frame.energy.total) for frame in simulation.frames()]
+    assert np.isfinite(frames).all()
+    summary = simulation.summary()
+    assert summary.simulated_time == pytest.approx(simulation.scene.duration)
+    assert summary.net_weight < 0.0
+    assert math.isfinite(summary.cog_z_range)
+
+
+def test_the_source_papers_scenes_keep_its_numbers():
+    for name in ("hourglass_drop_still", "hourglass_drop_waves"):
+        scene = read_scene(catalog.scenes()[name])
+        assert (scene.duration, scene.timestep) == (5.0, 0.01)
+    (wave,) = scene.water.waves
+    assert (wave.amplitude, wave.frequency) == (0.3, 0.5)
+
+
+def test_the_pool_has_the_depths_of_the_rulebook():
+    scene = read_scene(catalog.scenes()["auv_pool"])
+    model, data = Simulation(scene).model, Simulation(scene).data
+    mujoco.mj_forward(model, data)
+    hit = np.zeros(1, np.int32)
+    for x, depth in ((-12.45, 1.2), (0.05, 1.6), (12.45, 1.2), (6.25, 1.4)):
+        start = np.array([x, 5.0, 0.0])
+        found = mujoco.mj_ray(model, data, start, np.array([0.0, 0.0, -1.0]), None, 1, -1, hit, None)
+        assert found == pytest.approx(depth, abs=3e-3)
+    for direction, distance in (([1, 0, 0], 12.5), ([-1, 0, 0], 12.5), ([0, 1, 0], 8.0), ([0, -1, 0], 8.0)):
+        found = mujoco.mj_ray(model, data, np.array([0.0, 0.0, -0.6]), np.array(direction, float), None, 1, -1, hit, None)
+        assert found == pytest.approx(distance, abs=1e-6)
+
+
+def test_the_auv_touches_the_bottom_of_the_pool_and_comes_up():
+    simulation = Simulation(read_scene(catalog.scenes()["auv_pool"]))
+    *_, last = simulation.frames()
+    assert simulation.summary().contact_steps > 0
+    assert last.draft < 0.6
