@@ -7,6 +7,7 @@ from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
 from buoyancy_mj.errors import DivergenceError as DivergenceError
 from buoyancy_mj.errors import MeshError as MeshError
 from buoyancy_mj.errors import ModelError as ModelError
+from buoyancy_mj.errors import RecordingError as RecordingError
 from buoyancy_mj.errors import SceneError as SceneError
 from buoyancy_mj.errors import WaterError as WaterError
 from buoyancy_mj.loads import Loads as Loads

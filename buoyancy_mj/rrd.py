@@ -10,6 +10,7 @@ import os
 import struct
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import rerun as rr
@@ -49,16 +50,17 @@ class RrdFile:
         Raises:
             RecordingError: the disk is full or gone; the file ends with its last whole message.
         """
-        chunk = memoryview(_messages(self._stream.read() or b"", first=self._written == 0))
-        size = self._written + len(chunk)
+        chunk = self._stream.read() or b""
         try:
-            while chunk:
-                chunk = chunk[os.write(self._descriptor, chunk) :]
+            for message in _messages(chunk, first=self._written == 0):
+                rest = message
+                while rest:
+                    rest = rest[os.write(self._descriptor, rest) :]
+                self._written += len(message)
         except OSError as error:
             os.ftruncate(self._descriptor, self._written)
             path = self.close(complete=False)
             raise RecordingError(f"the recording broke off: {error.strerror}; what was written is in '{path}'") from error
-        self._written = size
 
     def close(self, *, complete: bool) -> Path:
         """Make the file whole and give it its name, unless it is a piece and a whole one is there.
@@ -75,16 +77,20 @@ class RrdFile:
         return self.growing
 
 
-def _messages(chunk: bytes, *, first: bool) -> bytes:
-    """The messages of one read, without its end; with its header if it is the first."""
+def _messages(chunk: bytes, *, first: bool) -> Iterator[memoryview]:
+    """The messages of one read, without its end; its header is one too if it is the first."""
     if not chunk:
-        return b""
+        return
+    if first:
+        yield memoryview(chunk)[:_HEADER]
     place = _HEADER
     while True:
         kind, length = _MESSAGE.unpack_from(chunk, place)
         if kind == _END:
-            return chunk[0 if first else _HEADER : place]
-        place += _MESSAGE.size + length
+            return
+        following = place + _MESSAGE.size + length
+        yield memoryview(chunk)[place:following]
+        place = following
 
 
 def _made_whole(path: Path) -> None:

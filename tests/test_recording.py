@@ -1,0 +1,169 @@
+"""Recordings, as `rerun` reads them back."""
+
+import re
+import resource
+import subprocess
+import sys
+
+import pytest
+
+from buoyancy_mj import RecordingError, Simulation, catalog, read_scene
+from buoyancy_mj.recording import Recording
+
+SHORT = ["duration=0.5", "record_rate=30"]
+
+
+def rerun(*arguments):
+    return subprocess.run([sys.executable, "-m", "rerun", "rrd", *arguments], capture_output=True, text=True, check=False)
+
+
+def recorded(path, scene="hourglass_drop_waves", settings=SHORT, frames=None):
+    simulation = Simulation(read_scene(catalog.scenes()[scene], settings))
+    recording = Recording(simulation, path)
+    for i, frame in enumerate(simulation.frames()):
+        if i == frames:
+            return simulation, recording
+        recording.add(frame)
+    recording.close(simulation.summary())
+    return simulation, recording
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    path = tmp_path_factory.mktemp("recording") / "run.rrd"
+    simulation, _ = recorded(path, settings=["duration=1.5", "record_rate=30"])
+    return path, simulation, rerun("print", "-vv", str(path)).stdout
+
+
+def test_a_recording_verifies(whole):
+    done = rerun("verify", str(whole[0]))
+    assert done.returncode == 0, done.stderr
+
+
+def entities(text):
+    return {entity.replace("\\", "") for entity in re.findall(r"/(?:world|plots|scene|summary)[^\s:,]*", text)}
+
+
+def test_it_holds_everything_that_was_promised(whole):
+    found = entities(whole[2])
+    for entity in (
+        "/world/bodies/hourglass",
+        "/world/bodies/hourglass/glass",
+        "/world/water",
+        "/world/waterline",
+        "/world/centres/gravity",
+        "/world/centres/buoyancy",
+        "/world/centres/buoyancy_of_hulls",
+        "/world/forces/weight",
+        "/world/forces/buoyancy",
+        "/world/forces/drag",
+        "/plots/volume/total",
+        "/plots/volume/glass",
+        "/plots/force/buoyancy",
+        "/plots/force/drag",
+        "/plots/force/weight",
+        "/plots/height/centre_of_gravity",
+        "/plots/height/surface",
+        "/plots/attitude/roll",
+        "/plots/attitude/pitch",
+        "/plots/attitude/yaw",
+        "/plots/energy/total",
+        "/scene",
+        "/summary",
+    ):
+        assert entity in found, entity
+
+
+def test_it_stands_on_the_timeline_of_simulated_time(whole):
+    assert "sim_time" in whole[2]
+
+
+def test_the_scene_file_and_the_summary_are_in_it(whole):
+    content = whole[0].read_bytes()
+    assert len(content) > 10_000
+    assert "TextDocument" in whole[2]
+
+
+def test_a_partial_name_is_not_left_behind(whole):
+    assert [path.name for path in whole[0].parent.iterdir()] == ["run.rrd"]
+
+
+def test_a_run_that_breaks_off_leaves_what_was_recorded(tmp_path):
+    path = tmp_path / "run.rrd"
+    simulation, recording = recorded(path, frames=8)
+    left = recording.close(simulation.summary(), complete=False)
+    assert left == path
+    assert rerun("verify", str(path)).returncode == 0
+    assert "/world/bodies/hourglass" in entities(rerun("print", "-vv", str(path)).stdout)
+
+
+def test_a_whole_recording_is_not_replaced_by_a_piece(tmp_path):
+    path = tmp_path / "run.rrd"
+    recorded(path)
+    before = path.read_bytes()
+    simulation, recording = recorded(path, frames=3)
+    assert path.read_bytes() == before
+    left = recording.close(simulation.summary(), complete=False)
+    assert left == tmp_path / "run.partial.rrd"
+    assert path.read_bytes() == before
+    assert rerun("verify", str(left)).returncode == 0
+
+
+def test_a_whole_recording_is_replaced_by_a_whole_one(tmp_path):
+    path = tmp_path / "run.rrd"
+    path.write_text("old")
+    recorded(path)
+    assert rerun("verify", str(path)).returncode == 0
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
+    path = tmp_path / "run.rrd"
+    recorded(path, settings=["duration=0.6", "record_rate=60"], frames=36)
+    partial = tmp_path / "run.partial.rrd"
+    assert partial.stat().st_size > 0
+    assert "/world/bodies/hourglass" in entities(rerun("print", "-vv", str(partial)).stdout)
+
+
+FULL_DISK = """
+import resource, sys
+from pathlib import Path
+from buoyancy_mj import RecordingError, Simulation, catalog, read_scene
+from buoyancy_mj.recording import Recording
+simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], ["duration=4"]))
+recording = Recording(simulation, Path(sys.argv[1]))
+# a file may not grow beyond this: writing fails as on a full disk
+resource.setrlimit(resource.RLIMIT_FSIZE, (2_000_000, 2_000_000))
+try:
+    for frame in simulation.frames():
+        recording.add(frame)
+except RecordingError as error:
+    print(error)
+"""
+
+
+@pytest.mark.skipif(not hasattr(resource, "RLIMIT_FSIZE"), reason="needs limits on file sizes")
+def test_a_full_disk_ends_the_recording_at_a_whole_message_and_says_so(tmp_path):
+    path = tmp_path / "run.rrd"
+    done = subprocess.run(
+        [sys.executable, "-c", FULL_DISK, str(path)], capture_output=True, text=True, check=False, timeout=120
+    )
+    assert f"the recording broke off: File too large; what was written is in '{path}'" in done.stdout, done.stderr
+    assert path.stat().st_size <= 2_000_000
+    assert "/world/bodies/sauvc_auv" in entities(rerun("print", "-vv", str(path)).stdout)
+
+
+def test_a_place_that_is_no_folder_is_told(tmp_path):
+    (tmp_path / "file").write_text("")
+    simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_still"], SHORT))
+    with pytest.raises(RecordingError, match=r"cannot write '.*run.partial.rrd': .*; choose another place \(--record\)"):
+        Recording(simulation, tmp_path / "file" / "run.rrd")
+
+
+@pytest.mark.parametrize("scene", ["auv_pool", "auv_drop_still"])
+def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
+    path = tmp_path / "run.rrd"
+    recorded(path, scene, ["duration=0.1"])
+    found = entities(rerun("print", "-vv", str(path)).stdout)
+    assert "/world/bodies/sauvc_auv/frame" in found
+    assert ("/world/environment/world/environment/floor_west" in found) == (scene == "auv_pool")
