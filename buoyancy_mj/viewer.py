@@ -1,7 +1,9 @@
 """MuJoCo's own interactive viewer, with the water acting and drawn in it."""
 
 import time
+import warnings
 
+import glfw
 import mujoco
 import mujoco.viewer
 import numpy as np
@@ -27,12 +29,17 @@ def view(simulation: Simulation) -> None:
         DivergenceError: see `Simulation.step`.
     """
     model, data = simulation.model, simulation.data
+    # light enough where the vehicle's file brings no lamp
+    model.vis.headlight.ambient[:] = np.maximum(model.vis.headlight.ambient, 0.35)
+    # MuJoCo would end the process where there is no display
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        if not glfw.init():
+            raise ModelError("MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none")
     try:
-        handle = mujoco.viewer.launch_passive(model, data)
+        handle = mujoco.viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False)
     except Exception as error:
-        raise ModelError(
-            f"MuJoCo's viewer could not be opened: {error}; it needs a display: use 'run' without one"
-        ) from error
+        raise ModelError(f"MuJoCo's viewer could not be opened: {error}; use 'run', which needs none") from error
     with handle as viewer:
         size = 4.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.buoyancy.hulls)
         viewer.cam.lookat[:] = simulation.buoyancy.centre_of_mass(data)
@@ -74,7 +81,7 @@ def draw_surface(scene: mujoco.MjvScene, water: Water, centre: np.ndarray, width
         normal /= np.linalg.norm(normal)
         along /= along_length
         across = np.cross(normal, along)
-        half = np.array([0.5 * tile * along_length, 0.5 * tile * np.hypot(1.0, slope_y[place]), 0.002 * width])
+        half = np.array([0.5 * tile * along_length, 0.5 * tile * np.hypot(1.0, slope_y[place]), 0.0005 * width])
         mujoco.mjv_initGeom(
             scene.geoms[scene.ngeom],
             mujoco.mjtGeom.mjGEOM_BOX,

@@ -1,3 +1,7 @@
+import os
+import subprocess
+import sys
+
 import mujoco
 import numpy as np
 import pytest
@@ -50,3 +54,13 @@ def test_drawing_again_replaces_what_was_drawn():
     scene = tiles(Water(waves=RegularWave(0.2, period=2.0)))
     draw_surface(scene, Water(), CENTRE, 4.0, 0.0)
     assert scene.ngeom == 1
+
+
+def test_without_a_display_the_viewer_says_so():
+    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    done = subprocess.run(
+        [sys.executable, "-m", "buoyancy_mj", "view", "hourglass_drop_still"],
+        env=environment, capture_output=True, text=True, check=False, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 1
+    assert done.stderr == "error: MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none\n"
