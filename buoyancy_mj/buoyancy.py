@@ -55,11 +55,12 @@ class Buoyancy:
         self._gravity()
         self.hulls = displacing_hulls(model, geoms)
         """The hulls, in the order of the model's geoms."""
-        self.packed = PackedHulls([hull.mesh for hull in self.hulls], [hull.geom for hull in self.hulls], self.water)
+        self._hull_bodies = np.array([hull.body for hull in self.hulls])
+        frames = [hull.geom for hull in self.hulls]
+        self.packed = PackedHulls([hull.mesh for hull in self.hulls], frames, self._hull_bodies, self.water)
         self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
         self.bodies = np.array(sorted({hull.body for hull in self.hulls}))
         """Indices of the bodies that have hulls."""
-        self._hull_bodies = np.array([hull.body for hull in self.hulls])
         roots = set(model.body_rootid[self.bodies].tolist())
         self.floating = np.array([body for body in range(model.nbody) if model.body_rootid[body] in roots])
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""

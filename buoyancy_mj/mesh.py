@@ -94,6 +94,11 @@ class TriMesh:
         return float(np.linalg.norm(self.vertices - self.centroid, axis=1).max())
 
     @property
+    def bounds(self) -> NDArray[np.float64]:
+        """Lowest and highest corner of the axis-aligned bounding box (2, 3) [m]."""
+        return np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @property
     def extents(self) -> NDArray[np.float64]:
         """Sides of the axis-aligned bounding box (3,) [m]."""
         return np.ptp(self.vertices, axis=0)

@@ -31,7 +31,7 @@ FLUSH_EVERY = 0.25
 SHOWN_GROUPS = 3
 """Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
 
-WATER = (70, 150, 215, 70)
+WATER = (70, 150, 215, 45)
 GRID = (190, 225, 250, 45)
 WET = np.array([25, 90, 190])
 WATERLINE = (255, 255, 255)
@@ -168,7 +168,7 @@ class Recording:
         """3D on the left, plots on the right, playing from the start."""
         start = np.asarray(self.simulation.scene.start.position)
         look = np.array([start[0], start[1], self.simulation.scene.water.level])
-        eye = look + self._size * np.array([-1.1, -1.6, 0.75])
+        eye = look + self._size * np.array([-0.95, -1.35, 0.6])
         view = rrb.Spatial3DView(
             origin="world",
             name=self.simulation.scene.title,
@@ -222,11 +222,19 @@ class Recording:
     def _log_wetness(self, frame: Frame) -> None:
         """Colours of the vertices that moved through the surface since the last frame."""
         data, water = frame.data, self.simulation.scene.water
+        # of hulls it is known whether they are wholly wet or dry
+        buoyancy = self.simulation.buoyancy
+        parts = frame.loads.hull.volume / buoyancy.packed.volumes
+        wet_parts = dict(zip((hull.geom for hull in buoyancy.hulls), parts.tolist(), strict=True))
         for shape in self._drawn:
             if not shape.moves:
                 continue
-            points = shape.vertices @ data.geom_xmat[shape.geom].reshape(3, 3).T + data.geom_xpos[shape.geom]
-            wet = water.depth(points, frame.time) > 0.0
+            part = wet_parts.get(shape.geom, 0.5)
+            if part in (0.0, 1.0):
+                wet = np.full(len(shape.vertices), part == 1.0)
+            else:
+                points = shape.vertices @ data.geom_xmat[shape.geom].reshape(3, 3).T + data.geom_xpos[shape.geom]
+                wet = water.depth(points, frame.time) > 0.0
             if shape.geom in self._wet and np.array_equal(wet, self._wet[shape.geom]):
                 continue
             self._wet[shape.geom] = wet

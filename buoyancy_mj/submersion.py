@@ -1,6 +1,8 @@
 """The submersion of hulls: one mesh by `submerge`, many at once by `PackedHulls`."""
 
 import dataclasses
+import functools
+import threading
 from collections.abc import Sequence
 
 import numpy as np
@@ -37,16 +39,23 @@ class PackedHulls:
     """Hulls in one set of arrays, ready to be submerged together without allocating.
 
     On still water the results are exact on the mesh. In waves the depth is linear on each triangle
-    of a mesh fine enough for that, see `followed`.
+    of a mesh fine enough for that, see `longest_edge`.
     """
 
-    def __init__(self, meshes: Sequence[TriMesh], frames: ArrayLike, water: Water) -> None:
-        """Pack `meshes`; `frames` (h,) says which row of positions and rotations places each."""
+    def __init__(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> None:
+        """Pack `meshes`.
+
+        Args:
+            meshes: the hulls (h).
+            frames: which row of positions and rotations places each (h,).
+            bodies: hulls of one number (h,) move together; errors in waves are seen against their joint volume.
+            water: the sea.
+        """
         self.water = water
         self.frames = np.asarray(frames, np.int64)
         self.volumes = np.array([mesh.volume for mesh in meshes])
         """Whole volumes (h,) [m^3]."""
-        meshes = [followed(mesh, water) for mesh in meshes]
+        meshes = _followed_together(meshes, np.asarray(bodies), water)
         self._vertices = np.concatenate([mesh.vertices for mesh in meshes])
         self._vertex_starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
         # unsigned, since Numba asks of a signed index whether it counts from the end
@@ -55,7 +64,7 @@ class PackedHulls:
         ).astype(np.uint32)
         self._face_starts = np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])
         self._face_areas = np.concatenate([mesh.areas for mesh in meshes])
-        self._whole = np.array([[m.volume, *m.centroid, m.area, m.radius] for m in meshes])
+        self._whole = np.array([[m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents)] for m in meshes])
         self._waves = water.rows
         self._points = np.empty((len(self._vertices), 4))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
@@ -113,28 +122,54 @@ def submerge(
         raise MeshError(f"position has shape {origin.shape}; it must be (3,)")
     if turn.shape != (3, 3) or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) or np.linalg.det(turn) < 0.0:
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
-    packed = PackedHulls([mesh], [0], water or Water())
-    row = packed.submerge(origin[None], turn.reshape(1, 9), float(time))[0]
+    with _LOCK:
+        row = _packed(mesh, water or Water()).submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
     return Submersion(
         volume=float(row[clip.VOLUME]),
-        centroid=row[clip.CENTROID].copy(),
+        centroid=row[clip.CENTROID],
         wetted_area=float(row[clip.WETTED_AREA]),
         waterplane_area=float(row[clip.WATERPLANE_AREA]),
     )
 
 
-def followed(mesh: TriMesh, water: Water) -> TriMesh:
-    """`mesh`, its triangles bisected until they are small enough to follow the waves; itself on still water.
+_LOCK = threading.Lock()  # a packed mesh has one set of results
+
+
+@functools.lru_cache(maxsize=16)
+def _packed(mesh: TriMesh, water: Water) -> PackedHulls:
+    """A mesh ready to be submerged again and again."""
+    return PackedHulls([mesh], [0], [0], water)
+
+
+def longest_edge(volume: float, area: float, water: Water) -> float:
+    """Longest edge [m] with which triangles follow the waves well enough for hulls of a volume and an area.
 
     A chord of length e under a curve of curvature c is off by c e^2 / 12 on average. A quarter of
     the surface faces up and a quarter down (Cauchy's mean projected area), so the volume is off by
     less than c e^2 / 12 times half the surface, and that must stay below `WAVE_TOLERANCE` of it.
-    No mesh is driven beyond about `MOST_TRIANGLES`.
+    No hull is driven beyond about `MOST_TRIANGLES`.
     """
     if water.curvature == 0.0:
-        return mesh
-    fine = np.sqrt(24.0 * WAVE_TOLERANCE * mesh.volume / (mesh.area * water.curvature))
-    return TriMesh(*bisected(mesh.vertices, mesh.faces, max(fine, np.sqrt(4.0 * mesh.area / MOST_TRIANGLES))))
+        return np.inf
+    fine = np.sqrt(24.0 * WAVE_TOLERANCE * volume / (area * water.curvature))
+    return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
+
+
+def _followed_together(meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water) -> list[TriMesh]:
+    """The meshes, fine enough for the waves as `longest_edge` has it for each body; themselves on still water."""
+    edges = {
+        body: longest_edge(
+            sum(mesh.volume for mesh, b in zip(meshes, bodies, strict=True) if b == body),
+            sum(mesh.area for mesh, b in zip(meshes, bodies, strict=True) if b == body),
+            water,
+        )
+        for body in set(bodies.tolist())
+    }
+    fine = []
+    for mesh, body in zip(meshes, bodies.tolist(), strict=True):
+        vertices, faces = bisected(mesh.vertices, mesh.faces, edges[body])
+        fine.append(mesh if faces is mesh.faces else TriMesh(vertices, faces))
+    return fine
 
 
 def wetted_surface(

@@ -57,6 +57,19 @@ def _cut(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
     return (v + w, mx + nx, my + ny, mz + nz, p + q), 1.0 - s * t
 
 
+@njit(cache=True, inline="always")
+def _turned(r, x, y, z):
+    """A vector of a frame, turned by the row-major rotation r (9,)."""
+    return r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z
+
+
+@njit(cache=True, inline="always")
+def _placed(origin, r, x, y, z):
+    """A point of a frame, in the world."""
+    tx, ty, tz = _turned(r, x, y, z)
+    return origin[0] + tx, origin[1] + ty, origin[2] + tz
+
+
 @njit(cache=True)
 def submerge_hulls(
     vertices,  # (v, 3) of all hulls, in the frame of each
@@ -64,7 +77,7 @@ def submerge_hulls(
     faces,  # (f, 3) into vertices
     face_starts,  # (h + 1,)
     face_areas,  # (f,)
-    whole,  # (h, 6) volume, centroid, area of each whole hull, radius of the sphere about its centroid
+    whole,  # (h, 11) volume, centroid, area of each whole hull, middle and half sides of its bounding box
     frames,  # (h,) row of each hull in positions and rotations
     positions,  # (n, 3) of the frames in the world
     rotations,  # (n, 9) world_from_frame, row-major
@@ -81,18 +94,18 @@ def submerge_hulls(
         steepness += abs(waves[i, 0]) * math.hypot(waves[i, 1], waves[i, 2])
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
-        cx, cy, cz = whole[h, 1], whole[h, 2], whole[h, 3]
-        x = origin[0] + r[0] * cx + r[1] * cy + r[2] * cz
-        y = origin[1] + r[3] * cx + r[4] * cy + r[5] * cz
-        z = origin[2] + r[6] * cx + r[7] * cy + r[8] * cz
-        # how deep the centroid lies, and how much shallower or deeper any point of the hull can be
+        # how deep the middle of its box lies, and how much shallower or deeper any point of it can be
+        x, y, z = _placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
         depth = level + elevation(waves, x, y, time) - z
-        reach = whole[h, 5] + min(2.0 * amplitude, steepness * whole[h, 5])
+        ex, ey, ez = whole[h, 8], whole[h, 9], whole[h, 10]
+        reach = abs(r[6]) * ex + abs(r[7]) * ey + abs(r[8]) * ez
+        reach += min(2.0 * amplitude, steepness * math.sqrt(ex * ex + ey * ey + ez * ez))
         if not math.isfinite(depth):
             out[h, :] = math.nan
             continue
         if depth >= reach:
-            out[h, 0], out[h, 1], out[h, 2], out[h, 3], out[h, 4], out[h, 5] = whole[h, 0], x, y, z, whole[h, 4], 0.0
+            out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], whole[h, 4], 0.0
+            out[h, 1], out[h, 2], out[h, 3] = _placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
             continue
         out[h, 0], out[h, 4], out[h, 5] = 0.0, 0.0, 0.0
         out[h, 1:4] = math.nan
@@ -100,10 +113,7 @@ def submerge_hulls(
             continue
         # points (x, y, z) of the hull relative to its origin, turned as the world, and their depths
         for i in range(vertex_starts[h], vertex_starts[h + 1]):
-            vx, vy, vz = vertices[i, 0], vertices[i, 1], vertices[i, 2]
-            px = r[0] * vx + r[1] * vy + r[2] * vz
-            py = r[3] * vx + r[4] * vy + r[5] * vz
-            pz = r[6] * vx + r[7] * vy + r[8] * vz
+            px, py, pz = _turned(r, vertices[i, 0], vertices[i, 1], vertices[i, 2])
             points[i, 0], points[i, 1], points[i, 2] = px, py, pz
             points[i, 3] = level + elevation(waves, origin[0] + px, origin[1] + py, time) - (origin[2] + pz)
         v = mx = my = mz = p = area = 0.0
