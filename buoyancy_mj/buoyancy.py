@@ -1,6 +1,7 @@
 """`Buoyancy`: water acting on the bodies of one MuJoCo model."""
 
 import contextlib
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.drag import Drag, estimated
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import BuoyancyWarning, ModelError
 from buoyancy_mj.geoms import displacing_hulls
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.loads import Loads, Portion
@@ -53,6 +54,12 @@ class Buoyancy:
         self.drag = drag
         _refuse_skipped_callback(model)
         self._gravity()
+        if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP and self.water.waves:
+            warnings.warn(
+                "this model lets bodies at rest sleep (<flag sleep='enable'/>), and waves do not wake them; disable sleep",
+                BuoyancyWarning,
+                stacklevel=2,
+            )
         self.hulls = displacing_hulls(model, geoms)
         """The hulls, in the order of the model's geoms."""
         self._hull_bodies = np.array([hull.body for hull in self.hulls])

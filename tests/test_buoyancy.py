@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj import Buoyancy, Drag, LevelOscillation, ModelError, RegularWave, Water
+from buoyancy_mj import Buoyancy, BuoyancyWarning, Drag, LevelOscillation, ModelError, RegularWave, Water
 from buoyancy_mj.geoms import displacing_hulls
 
 BOX = """
@@ -158,6 +158,13 @@ def test_springs_and_dampers_may_be_disabled():
     with Buoyancy(model, drag=None).installed():
         mujoco.mj_forward(model, data)
     assert data.qacc[2] == pytest.approx(9.81 * (24.0 / 6.0 - 1.0))
+
+
+def test_sleep_that_waves_would_not_end_is_told():
+    model, _ = box(flag="sleep='enable'")
+    Buoyancy(model)
+    with pytest.warns(BuoyancyWarning, match="lets bodies at rest sleep .* and waves do not wake them; disable sleep"):
+        Buoyancy(model, Water(waves=LevelOscillation(0.1, 0.1)))
 
 
 # integrators ----------------------------------------------------------------------------------------
