@@ -145,6 +145,11 @@ class Buoyancy:
             by_cause={cause: rows.copy() for cause, rows in self._causes.items()},
         )
 
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Names of the loads that act."""
+        return tuple(self._causes)
+
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the floating bodies, world frame."""
         masses = self.model.body_mass[self.floating]

@@ -1,53 +1,33 @@
 """`Recording`: a run as Rerun data; static things once, the rest per frame, scalars as columns."""
 
-import dataclasses
 import uuid
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import mujoco
 import numpy as np
 import rerun as rr
-import rerun.blueprint as rrb
-import trimesh
 from numpy.typing import NDArray
 
-from buoyancy_mj import geoms
+from buoyancy_mj import plots
+from buoyancy_mj.drawn import Drawn, drawn_geoms
 from buoyancy_mj.errors import RecordingError
-from buoyancy_mj.mesh import bisected
+from buoyancy_mj.geoms import body_name, geom_name
+from buoyancy_mj.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.rrd import RrdFile
 from buoyancy_mj.simulation import Frame, Simulation, Summary
 from buoyancy_mj.submersion import wetted_surface
 
-TIMELINE = "sim_time"
-"""Simulated time [s]."""
 SURFACE_CELLS = 24
 """Cells along each side of the water's surface."""
 SURFACE_WIDTH = 4.0
 """Its side, over the length of the vehicle."""
 FLUSH_EVERY = 0.25
 """Simulated time [s] after which what is buffered goes to the file, so that little is lost when a run is killed."""
-SHOWN_GROUPS = 3
-"""Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
 
 WATER = (70, 150, 215, 45)
 GRID = (190, 225, 250, 45)
 WET = np.array([25, 90, 190])
 WATERLINE = (255, 255, 255)
-COLOURS = {"weight": (235, 200, 40), "buoyancy": (60, 160, 255), "drag": (240, 90, 60)}
-SERIES: Mapping[str, tuple[tuple[str, tuple[int, int, int]], ...]] = {
-    "force": (("weight", COLOURS["weight"]), ("buoyancy", COLOURS["buoyancy"]), ("drag", COLOURS["drag"])),
-    "height": (("centre_of_gravity", (240, 130, 40)), ("surface", (60, 160, 255))),
-    "attitude": (("roll", (230, 80, 80)), ("pitch", (80, 200, 100)), ("yaw", (90, 130, 250))),
-    "energy": (
-        ("kinetic", (230, 80, 80)),
-        ("potential", COLOURS["weight"]),
-        ("buoyancy", COLOURS["buoyancy"]),
-        ("total", (230, 230, 230)),
-    ),
-}
-"""Plots, their lines and colours; submerged volumes have a line for each hull besides."""
 
 
 class Recording:
@@ -83,7 +63,7 @@ class Recording:
         self._times: list[float] = []
         self._surface_centre: NDArray[np.float64] | None = None
         self._size = 2.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.buoyancy.hulls)
-        self._drawn = list(_drawn_geoms(simulation.model))
+        self._drawn = list(drawn_geoms(simulation.model))
         self._wet: dict[int, NDArray[np.bool_]] = {}
         self._bodies = sorted({shape.body for shape in self._drawn if shape.moves})
         self._log_static()
@@ -104,7 +84,9 @@ class Recording:
         self._log_bodies(frame)
         self._log_water(frame)
         self._log_forces(frame)
-        self._buffer(frame)
+        self._times.append(frame.time)
+        for line, value in plots.values(frame, self._weight()).items():
+            self._scalars.setdefault(line, []).append(value)
         if self._times[-1] - self._times[0] >= FLUSH_EVERY:
             self._send_scalars()
             self._write()
@@ -136,69 +118,23 @@ class Recording:
     # static things ----------------------------------------------------------------------------------
 
     def _log_static(self) -> None:
+        scene = self.simulation.scene
+        look_at = np.array([*scene.start.position[:2], scene.water.level])
         for stream in self._streams:
-            stream.send_blueprint(self._blueprint())
+            stream.send_blueprint(plots.blueprint(scene.title, look_at, self._size))
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        self._log(
-            "scene", rr.TextDocument(f"```toml\n{self.simulation.scene.text}\n```", media_type="text/markdown"), static=True
-        )
+        self._log("scene", rr.TextDocument(f"```toml\n{scene.text}\n```", media_type="text/markdown"), static=True)
         for shape in self._drawn:
+            entity = self._entity(shape)
             mesh = rr.Mesh3D(vertex_positions=shape.vertices, triangle_indices=shape.faces, vertex_normals=shape.normals)
-            self._log(shape.entity, mesh, static=True)
-            self._log(shape.entity, rr.Transform3D(translation=shape.position, mat3x3=shape.rotation), static=True)
+            self._log(entity, mesh, static=True)
+            self._log(entity, rr.Transform3D(translation=shape.position, mat3x3=shape.rotation), static=True)
             if not shape.moves:
-                self._log(shape.entity, rr.Mesh3D.from_fields(albedo_factor=shape.colour), static=True)
-        for plot, lines in (*SERIES.items(), ("volume", self._volume_lines())):
-            for name, colour in lines:
-                self._log(f"plots/{plot}/{name}", rr.SeriesLines(colors=[colour], names=[name], widths=[1.5]), static=True)
+                self._log(entity, rr.Mesh3D.from_fields(albedo_factor=shape.colour), static=True)
+        hulls = [hull.name for hull in self.simulation.buoyancy.hulls]
+        for line, style in plots.styles(self.simulation.buoyancy.causes, hulls).items():
+            self._log(plots.entity(line), style, static=True)
         self._write()
-
-    def _volume_lines(self) -> tuple[tuple[str, tuple[int, int, int]], ...]:
-        names = [hull.name for hull in self.simulation.buoyancy.hulls]
-        hues = (
-            np.array(trimesh.visual.color.hsv_to_rgba(np.column_stack([(i * 0.61803) % 1.0, 0.5, 0.9]))[0])
-            for i in range(len(names))
-        )
-        return (
-            ("total", (230, 230, 230)),
-            *((name, tuple(hue[:3].tolist())) for name, hue in zip(names, hues, strict=True)),
-        )
-
-    def _blueprint(self) -> rrb.Blueprint:
-        """3D on the left, plots on the right, playing from the start."""
-        start = np.asarray(self.simulation.scene.start.position)
-        look = np.array([start[0], start[1], self.simulation.scene.water.level])
-        eye = look + self._size * np.array([-0.95, -1.35, 0.6])
-        view = rrb.Spatial3DView(
-            origin="world",
-            name=self.simulation.scene.title,
-            background=rrb.Background(color=[24, 30, 40]),
-            line_grid=rrb.LineGrid3D(visible=False),
-            eye_controls=rrb.EyeControls3D(position=eye, look_target=look, eye_up=[0, 0, 1]),
-        )
-        plots = [
-            rrb.TimeSeriesView(
-                origin=f"plots/{plot}",
-                name=title,
-                plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=plot != "volume"),
-            )
-            for plot, title in (
-                ("height", "height [m]"),
-                ("force", "force [N]"),
-                ("volume", "submerged volume [l]"),
-                ("attitude", "attitude [deg]"),
-                ("energy", "energy [J]"),
-            )
-        ]
-        texts = rrb.Tabs(
-            rrb.TextDocumentView(origin="summary", name="summary"), rrb.TextDocumentView(origin="scene", name="scene")
-        )
-        return rrb.Blueprint(
-            rrb.Horizontal(rrb.Vertical(view, texts, row_shares=[4, 1]), rrb.Vertical(*plots), column_shares=[3, 2]),
-            rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
-            rrb.BlueprintPanel(state="collapsed"),
-            rrb.SelectionPanel(state="collapsed"),
-        )
 
     # one frame --------------------------------------------------------------------------------------
 
@@ -207,7 +143,7 @@ class Recording:
         data, water = frame.data, self.simulation.scene.water
         for body in self._bodies:
             self._log(
-                _entity(self.simulation.model, body),
+                self._body_entity(body),
                 rr.Transform3D(translation=data.xpos[body], mat3x3=data.xmat[body].reshape(3, 3)),
             )
         self._log_wetness(frame)
@@ -239,7 +175,9 @@ class Recording:
                 continue
             self._wet[shape.geom] = wet
             dyed = (0.45 * shape.colour[:3] + 0.55 * WET).astype(np.uint8)
-            self._log(shape.entity, rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour[:3])))
+            self._log(
+                self._entity(shape), rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour[:3]))
+            )
 
     def _log_water(self, frame: Frame) -> None:
         """The surface around the vehicle; it moves in whole cells, and still water only when it has to."""
@@ -288,109 +226,33 @@ class Recording:
                 rr.Arrows3D(
                     origins=[origin],
                     vectors=[scale * force],
-                    colors=[COLOURS.get(cause, (200, 200, 200))],
+                    colors=[COLOURS.get(cause, NEUTRAL)],
                     radii=[0.012 * self._size],
                 ),
             )
-
-    def _buffer(self, frame: Frame) -> None:
-        """Keep the frame's scalars until they are sent together."""
-        self._times.append(frame.time)
-        loads, energy = frame.loads, frame.energy
-        roll, pitch, yaw = np.degrees(frame.attitude)
-        values = {
-            "force/weight": self._weight(),
-            "height/centre_of_gravity": float(frame.centre_of_mass[2]),
-            "height/surface": frame.elevation,
-            "attitude/roll": roll,
-            "attitude/pitch": pitch,
-            "attitude/yaw": yaw,
-            "energy/kinetic": energy.kinetic,
-            "energy/potential": energy.potential,
-            "energy/buoyancy": energy.buoyancy,
-            "energy/total": energy.total,
-            "volume/total": 1000.0 * float(loads.total.volume),
-        }
-        for cause, rows in loads.by_cause.items():
-            values[f"force/{cause}"] = float(np.linalg.norm(rows[:, :3].sum(axis=0)))
-        for name, volume in zip(loads.names, loads.hull.volume, strict=True):
-            values[f"volume/{name}"] = 1000.0 * float(volume)
-        for name, value in values.items():
-            self._scalars.setdefault(name, []).append(value)
 
     def _send_scalars(self) -> None:
         if not self._times:
             return
         times = rr.TimeColumn(TIMELINE, duration=self._times)
-        for name, values in self._scalars.items():
+        for line, values in self._scalars.items():
             for stream in self._streams:
-                stream.send_columns(f"plots/{name}", [times], rr.Scalars.columns(scalars=values))
+                stream.send_columns(plots.entity(line), [times], rr.Scalars.columns(scalars=values))
         self._times, self._scalars = [], {}
+
+    def _body_entity(self, body: int) -> str:
+        """Where a body stands in the recording."""
+        if body == 0:
+            return "world/environment"
+        return f"world/bodies/{rr.escape_entity_path_part(body_name(self.simulation.model, body))}"
+
+    def _entity(self, shape: Drawn) -> str:
+        """Where a geom stands in the recording."""
+        name = geom_name(self.simulation.model, shape.geom)
+        return f"{self._body_entity(shape.body)}/{rr.escape_entity_path_part(name)}"
 
     def _weight(self) -> float:
         return self.simulation.mass * float(np.abs(self.simulation.model.opt.gravity[2]))
-
-
-@dataclasses.dataclass(frozen=True)
-class _Shape:
-    """A geom as it is drawn."""
-
-    geom: int
-    body: int
-    entity: str
-    moves: bool
-    colour: NDArray[np.int64]
-    position: NDArray[np.float64]
-    rotation: NDArray[np.float64]
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    normals: NDArray[np.float64]
-
-
-def _drawn_geoms(model: mujoco.MjModel) -> Iterator[_Shape]:
-    """Every geom that MuJoCo's viewer would show, or all if it would show none."""
-    shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN_GROUPS] or list(range(model.ngeom))
-    moving = {g for g in shown if model.body_weldid[model.geom_bodyid[g]]}
-    for g in shown:
-        material = model.geom_matid[g]
-        rgba = model.mat_rgba[material] if material >= 0 else model.geom_rgba[g]
-        arrays = _plane(model, g) if model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE else geoms.geom_mesh(model, g)
-        if arrays is None or rgba[3] == 0.0:
-            continue
-        vertices, faces = arrays
-        if g in moving:
-            # small enough faces for their wetness to be shown by vertices
-            vertices, faces = bisected(vertices, faces, np.ptp(vertices, axis=0).max() / 12.0)
-        smooth = trimesh.graph.smooth_shade(trimesh.Trimesh(vertices, faces, process=False), angle=0.6)
-        rotation = np.empty(9)
-        mujoco.mju_quat2Mat(rotation, model.geom_quat[g])
-        body = int(model.geom_bodyid[g])
-        yield _Shape(
-            geom=g,
-            body=body,
-            entity=f"{_entity(model, body)}/{rr.escape_entity_path_part(geoms.geom_name(model, g))}",
-            moves=g in moving,
-            colour=(rgba * 255.0).astype(np.int64),
-            position=model.geom_pos[g].copy(),
-            rotation=rotation.reshape(3, 3),
-            vertices=np.asarray(smooth.vertices),
-            faces=np.asarray(smooth.faces),
-            normals=np.asarray(smooth.vertex_normals),
-        )
-
-
-def _plane(model: mujoco.MjModel, geom: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A plane as a rectangle; an endless one ends 20 m away."""
-    half = [size if size > 0.0 else 20.0 for size in model.geom_size[geom, :2]]
-    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * [*half, 0.0]
-    return corners, np.array([[0, 1, 2], [0, 2, 3]])
-
-
-def _entity(model: mujoco.MjModel, body: int) -> str:
-    """Where a body stands in the recording."""
-    if not model.body_weldid[body]:
-        return f"world/environment/{rr.escape_entity_path_part(geoms.body_name(model, body))}"
-    return f"world/bodies/{rr.escape_entity_path_part(geoms.body_name(model, body))}"
 
 
 def _summary_text(summary: Summary) -> str:

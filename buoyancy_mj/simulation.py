@@ -135,6 +135,10 @@ class Simulation:
         self._wall = 0.0
         self._contact_steps = 0
         self._first_contact: float | None = None
+        # compiles what a fresh installation has not compiled, before the clock runs
+        mujoco.mj_forward(self.model, self._shown)
+        self.buoyancy.evaluate(self._shown)
+        scene.water.elevation(0.0, 0.0, 0.0)
         fixed = self.model.body_weldid[self.model.geom_bodyid] == 0
         floating = np.isin(self.model.geom_bodyid, self.buoyancy.floating)
         self._touches = fixed[:, None] & floating[None, :]

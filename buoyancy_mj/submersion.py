@@ -53,8 +53,6 @@ class PackedHulls:
         """
         self.water = water
         self.frames = np.asarray(frames, np.int64)
-        self.volumes = np.array([mesh.volume for mesh in meshes])
-        """Whole volumes (h,) [m^3]."""
         meshes = _followed_together(meshes, np.asarray(bodies), water)
         self._vertices = np.concatenate([mesh.vertices for mesh in meshes])
         self._vertex_starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
@@ -65,6 +63,8 @@ class PackedHulls:
         self._face_starts = np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])
         self._face_areas = np.concatenate([mesh.areas for mesh in meshes])
         self._whole = np.array([[m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents)] for m in meshes])
+        self.volumes = self._whole[:, 0].copy()
+        """Whole volumes (h,) [m^3]."""
         self._waves = water.rows
         self._points = np.empty((len(self._vertices), 4))
         self.results = np.zeros((len(meshes), clip.COLUMNS))

@@ -166,4 +166,16 @@ def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
     recorded(path, scene, ["duration=0.1"])
     found = entities(rerun("print", "-vv", str(path)).stdout)
     assert "/world/bodies/sauvc_auv/frame" in found
-    assert ("/world/environment/world/environment/floor_west" in found) == (scene == "auv_pool")
+    assert ("/world/environment/environment/floor_west" in found) == (scene == "auv_pool")
+
+
+def test_names_may_hold_anything(tmp_path):
+    (tmp_path / "odd.xml").write_text(
+        """<mujoco><worldbody><body name="my boat/2"><freejoint/><geom name="bow \u00e9 [1]" type="box" size=".2 .1 .1"
+        density="300"/><geom type="box" size=".05 .05 .05" pos="0 0 .15" density="300"/></body></worldbody></mujoco>"""
+    )
+    recorded(tmp_path / "run.rrd", settings=["duration=0.1", f"vehicle='{tmp_path / 'odd.xml'}'"])
+    assert rerun("verify", str(tmp_path / "run.rrd")).returncode == 0
+    found = rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout.replace("\\", "")
+    assert "/world/bodies/my boat/2/bow \u00e9 [1]" in found
+    assert "/plots/volume/my boat/2/box 1" in found
