@@ -158,12 +158,12 @@ def _recorded(simulation: Simulation, target: Path | None, *, live: bool) -> tup
             for frame in simulation.frames():
                 recording.add(frame)
                 advance(frame.time)
-    except KeyboardInterrupt:
-        _left(recording.close(simulation.summary(), complete=False), simulation.data.time)
-        raise typer.Exit(130) from None
-    except BuoyancyError:
+    except BaseException as error:
+        # whatever ends the run, what was recorded stays
         if not recording.closed:
             _left(recording.close(simulation.summary(), complete=False), simulation.data.time)
+        if isinstance(error, KeyboardInterrupt):
+            raise typer.Exit(130) from None
         raise
     summary = simulation.summary()
     return summary, recording.close(summary)

@@ -1,5 +1,7 @@
 """`Recording`: a run as Rerun data; static things once, the rest per frame, scalars as columns."""
 
+import os
+import sys
 import uuid
 from pathlib import Path
 from typing import Any
@@ -51,14 +53,9 @@ class Recording:
         self.path = path
         identity = str(uuid.uuid4())
         self._streams = [rr.RecordingStream("buoyancy_mj", recording_id=identity) for _ in range((path is not None) + live)]
-        self._file = RrdFile(path, self._streams[0]) if path is not None else None
         if live:
-            try:
-                self._streams[-1].spawn()
-            except Exception as error:
-                raise RecordingError(
-                    f"no Rerun viewer could be started: {error}; record to a file instead (--record)"
-                ) from error
+            _spawn(self._streams[-1])
+        self._file = RrdFile(path, self._streams[0]) if path is not None else None
         self._scalars: dict[str, list[float]] = {}
         self._times: list[float] = []
         self._surface_centre: NDArray[np.float64] | None = None
@@ -253,6 +250,19 @@ class Recording:
 
     def _weight(self) -> float:
         return self.simulation.mass * float(np.abs(self.simulation.model.opt.gravity[2]))
+
+
+def _spawn(stream: rr.RecordingStream) -> None:
+    """Stream to a viewer; the one of this environment is found although the environment is not activated."""
+    before = os.environ.get("PATH", "")
+    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), before])
+    try:
+        stream.spawn()
+    except Exception as error:
+        first, *_ = str(error).strip().splitlines()
+        raise RecordingError(f"no Rerun viewer could be started: {first}; record to a file instead (--record)") from error
+    finally:
+        os.environ["PATH"] = before
 
 
 def _summary_text(summary: Summary) -> str:

@@ -9,7 +9,8 @@ MODEL = """
   <asset><material name="red" rgba="1 0 0 .5"/></asset>
   <worldbody>
     <geom name="floor" type="plane" size="0 3 1" pos="0 0 -2"/>
-    <body name="pier" pos="1 2 0" euler="0 0 90"><geom name="pier" type="box" size="1 .1 .1" pos=".5 0 0" material="red"/></body>
+    <body name="pier" pos="1 2 0" euler="0 0 90">
+      <geom name="pier" type="box" size="1 .1 .1" pos=".5 0 0" material="red"/></body>
     <body name="boat" pos="0 0 3"><freejoint/>
       <geom name="hull" type="box" size="1 .2 .1" rgba="0 1 0 1"/>
       <geom name="hidden" type="box" size="1 .2 .1" group="3"/>
