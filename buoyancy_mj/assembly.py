@@ -29,7 +29,7 @@ def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData]:
     path = catalog.model_path(scene.vehicle, scene.folder)
     spec = catalog.read_spec(path)
     _free(spec, path)
-    _leave_out_dry_land(spec, scene.water.level)
+    _leave_out_dry_land(spec, path, scene.water.level)
     bodies = len(spec.bodies)
     if scene.environment is not None:
         surroundings = catalog.read_spec(catalog.environment_path(scene.environment, scene.folder))
@@ -37,10 +37,7 @@ def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData]:
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
-    try:
-        model = spec.compile()
-    except ValueError as error:
-        raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
+    model = _compiled(spec, path)
     data = mujoco.MjData(model)
     _place(model, data, scene.start, bodies)
     return model, data
@@ -70,17 +67,33 @@ def _free(spec: mujoco.MjSpec, path: Path) -> None:
         )
 
 
-def _leave_out_dry_land(spec: mujoco.MjSpec, level: float) -> None:
-    """Remove ground planes of the vehicle's file that lie at the water level or above: no water could be there."""
-    for geom in list(spec.worldbody.geoms):
-        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE and geom.pos[2] >= level - 1e-9:
+def _leave_out_dry_land(spec: mujoco.MjSpec, path: Path, level: float) -> None:
+    """Remove level ground of the vehicle's file at the height of the water or above: no water could be there."""
+    planes = [geom for geom in spec.worldbody.geoms if geom.type == mujoco.mjtGeom.mjGEOM_PLANE]
+    if not planes:
+        return
+    # the compiler knows which way they face, however that was written
+    model = _compiled(spec.copy(), path)
+    own = [g for g in range(model.ngeom) if model.geom_bodyid[g] == 0 and model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE]
+    up, normal = np.array([0.0, 0.0, 1.0]), np.empty(3)
+    for plane, g in zip(planes, own, strict=True):
+        mujoco.mju_rotVecQuat(normal, up, model.geom_quat[g])
+        height = model.geom_pos[g, 2]
+        if normal[2] > 0.95 and height >= level - 1e-9:
             warnings.warn(
-                f"the vehicle's ground plane '{geom.name}' at z = {geom.pos[2]:g} m would keep out the water at {level:g} m "
+                f"the vehicle's ground plane '{plane.name}' at z = {height:g} m would keep out the water at {level:g} m "
                 "and was left out",
                 BuoyancyWarning,
-                stacklevel=3,
+                stacklevel=4,
             )
-            spec.delete(geom)
+            spec.delete(plane)
+
+
+def _compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
+    try:
+        return spec.compile()
+    except ValueError as error:
+        raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
 
 
 def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int) -> None:

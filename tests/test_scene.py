@@ -209,9 +209,10 @@ def test_a_ground_plane_at_the_water_level_is_left_out_with_a_notice(folder):
     assert simulation.model.ngeom == 1
 
 
-def test_a_sea_bed_stays(folder):
+@pytest.mark.parametrize("pose", ['pos="0 0 -2"', 'pos="0 5 0.7" euler="90 0 0"', 'pos="0 0 0.7" zaxis="1 0 0"'])
+def test_a_sea_bed_and_walls_stay(folder, pose):
     xml = BOX.format(joint="", more="", rest="").replace(
-        "<worldbody>", '<worldbody><geom name="bed" type="plane" size="1 1 1" pos="0 0 -2"/>'
+        "<worldbody>", f'<worldbody><geom name="bed" type="plane" size="1 1 1" {pose}/>'
     )
     assert simulation_of(folder, xml).model.ngeom == 2
 
