@@ -9,10 +9,12 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj import geoms
-from buoyancy_mj.mesh import bisected
+from buoyancy_mj.mesh import refined
 
 SHOWN_GROUPS = 3
 """Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
+DEFAULT_RGBA = np.array([0.5, 0.5, 0.5, 1.0], np.float32)
+"""Colour of a geom that was given none; only then does its material's show."""
 FINENESS = 12.0
 """Length of a moving geom over its longest edge: fine enough to show by its vertices what of it is wet."""
 
@@ -26,7 +28,7 @@ class Drawn:
     body: int
     """Index of its body; 0, the world, for all that does not move."""
     colour: NDArray[np.uint8]
-    """Red, green, blue, alpha (4,), of its material if it has one."""
+    """Red, green, blue, alpha (4,), its own or its material's."""
     position: NDArray[np.float64]
     """Origin of its frame in that body (3,) [m]."""
     rotation: NDArray[np.float64]
@@ -51,7 +53,9 @@ def drawn_geoms(model: mujoco.MjModel) -> Iterator[Drawn]:
     shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN_GROUPS] or list(range(model.ngeom))
     for g in shown:
         material = model.geom_matid[g]
-        rgba = model.mat_rgba[material] if material >= 0 else model.geom_rgba[g]
+        rgba = model.geom_rgba[g]
+        if material >= 0 and np.array_equal(rgba, DEFAULT_RGBA):
+            rgba = model.mat_rgba[material]
         is_plane = model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE
         arrays = _plane(model.geom_size[g]) if is_plane else geoms.geom_mesh(model, g)
         if arrays is None or rgba[3] == 0.0:
@@ -59,7 +63,7 @@ def drawn_geoms(model: mujoco.MjModel) -> Iterator[Drawn]:
         vertices, faces = arrays
         body = int(model.geom_bodyid[g])
         if model.body_weldid[body] or model.body_mocapid[body] >= 0:
-            vertices, faces = bisected(vertices, faces, float(np.ptp(vertices, axis=0).max()) / FINENESS)
+            vertices, faces = refined(vertices, faces, float(np.ptp(vertices, axis=0).max()) / FINENESS)
         else:
             body = 0
         smooth = trimesh.graph.smooth_shade(trimesh.Trimesh(vertices, faces, process=False), angle=0.6)

@@ -104,8 +104,13 @@ class TriMesh:
         return np.ptp(self.vertices, axis=0)
 
     def transformed(self, rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> "TriMesh":
-        """The mesh turned by `rotation` (3, 3), then moved by `translation` (3,) [m]."""
-        return TriMesh(self.vertices @ np.asarray(rotation, float).T + np.asarray(translation, float), self.faces)
+        """The mesh turned by a rotation matrix (3, 3), then moved by `translation` (3,) [m]."""
+        moved = object.__new__(TriMesh)
+        vertices = self.vertices @ np.asarray(rotation, float).T + np.asarray(translation, float)
+        vertices.setflags(write=False)
+        object.__setattr__(moved, "vertices", vertices)
+        object.__setattr__(moved, "faces", self.faces)
+        return moved
 
 
 def checked_arrays(vertices: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -114,7 +119,10 @@ def checked_arrays(vertices: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.fl
     Raises:
         MeshError: wrong shapes, no triangle, a coordinate that is not finite, an index out of range.
     """
-    v, f = np.asarray(vertices, np.float64), np.asarray(faces)
+    try:
+        v, f = np.asarray(vertices, np.float64), np.asarray(faces)
+    except (TypeError, ValueError) as error:
+        raise MeshError(f"vertices and faces must be arrays of numbers: {error}") from error
     if v.ndim != 2 or v.shape[1] != 3:
         raise MeshError(f"vertices have shape {v.shape}; they must be (n, 3)")
     if f.ndim != 2 or f.shape[1] != 3:
@@ -134,32 +142,64 @@ def checked_arrays(vertices: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.fl
 def open_edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
     """Directed edges (k, 2) that their reverses do not cancel: the boundary of the surface."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    forward = edges[:, 0] < edges[:, 1]
-    pairs, inverse = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
-    net = np.bincount(inverse.ravel(), np.where(forward, 1, -1), len(pairs)).astype(np.int64)
-    net[pairs[:, 0] == pairs[:, 1]] = 0
-    directed = np.where((net > 0)[:, None], pairs, pairs[:, ::-1])
+    edges = edges[edges[:, 0] != edges[:, 1]]
+    low, high = edges.min(axis=1), edges.max(axis=1)
+    # one number for each pair of vertices; its edges forward less those backward
+    count = int(faces.max()) + 1
+    pairs, inverse = np.unique(low * count + high, return_inverse=True)
+    net = np.bincount(inverse, np.where(edges[:, 0] == low, 1, -1), len(pairs)).astype(np.int64)
+    ends = np.column_stack([pairs // count, pairs % count])
+    directed = np.where((net > 0)[:, None], ends, ends[:, ::-1])
     return np.repeat(directed, np.abs(net), axis=0)
 
 
-def bisected(
+def refined(
     vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The same surface, its triangles halved across their longest edges until none is longer than `edge` [m]."""
+    """The same surface with edges of about `edge` [m] at most, in about as few triangles as that takes.
+
+    Well-shaped triangles are halved across their longest edge; slender ones are cut across their
+    two long edges at once, where a diagonal may reach 1.4 `edge`. Neighbours may be cut at different
+    places along their common edge.
+    """
     v, f, done = vertices, faces, []
     while len(f):
         # turn each face so that its longest edge runs from corner 0 to corner 1
         a, b, c = v[f.T]
         lengths = np.stack([np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=1)
         f = np.take_along_axis(f, (lengths.argmax(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
-        long = lengths.max(axis=1) > edge
+        longest, shortest = lengths.max(axis=1), lengths.min(axis=1)
+        long = longest > edge
+        slender = long & (shortest <= 0.7 * edge)
         done.append(f[~long])
-        f = f[long]
+        # slices no deeper than 0.7 edges have diagonals below one
+        counts = np.ceil(longest[slender] / (0.7 * edge)).astype(np.int64)
+        for count in np.unique(counts):
+            v, slices = _sliced(v, f[slender][counts == count], int(count))
+            done.append(slices)
+        f = f[long & ~slender]
         m = len(v) + np.arange(len(f))
         v = np.vstack([v, 0.5 * (v[f[:, 0]] + v[f[:, 1]])])
         f = np.vstack([np.column_stack([f[:, 0], m, f[:, 2]]), np.column_stack([m, f[:, 1], f[:, 2]])])
-    if len(done) == 1:
+    if len(v) == len(vertices):
         return vertices, faces
-    # both faces at an edge have found the same midpoint, to the last bit
     places, inverse = np.unique(v, axis=0, return_inverse=True)
     return places, inverse.ravel()[np.vstack(done)]
+
+
+def _sliced(v: NDArray[np.float64], f: NDArray[np.int64], count: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Triangles cut into `count` slices parallel to their shortest edge."""
+    # the tip lies opposite the shortest edge
+    a, b, c = v[f.T]
+    opposite = np.stack([np.linalg.norm(q - p, axis=1) for p, q in ((b, c), (c, a), (a, b))], axis=1)
+    f = np.take_along_axis(f, (opposite.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
+    tip, left, right = v[f.T]
+    part = np.arange(1, count)[:, None, None] / count
+    rungs = np.concatenate([tip + part * (left - tip), tip + part * (right - tip)]).reshape(-1, 3)
+    # indices (count, n) down the left and the right side, ending at the corners themselves
+    new = len(v) + np.arange(2 * (count - 1) * len(f)).reshape(2, count - 1, len(f))
+    lefts, rights = np.vstack([new[0], f[None, :, 1]]), np.vstack([new[1], f[None, :, 2]])
+    tips = np.column_stack([f[:, 0], lefts[0], rights[0]])
+    upper = np.stack([lefts[:-1], lefts[1:], rights[1:]], axis=-1).reshape(-1, 3)
+    lower = np.stack([lefts[:-1], rights[1:], rights[:-1]], axis=-1).reshape(-1, 3)
+    return np.vstack([v, rungs]), np.vstack([tips, upper, lower])

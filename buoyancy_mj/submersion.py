@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
 from buoyancy_mj.kernels import clip
-from buoyancy_mj.mesh import TriMesh, bisected
+from buoyancy_mj.mesh import TriMesh, refined
 from buoyancy_mj.water import Water
 
 WAVE_TOLERANCE = 2e-3
@@ -53,18 +53,20 @@ class PackedHulls:
         """
         self.water = water
         self.frames = np.asarray(frames, np.int64)
-        meshes = _followed_together(meshes, np.asarray(bodies), water)
-        self._vertices = np.concatenate([mesh.vertices for mesh in meshes])
-        self._vertex_starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-        # unsigned, since Numba asks of a signed index whether it counts from the end
-        self._faces = np.concatenate(
-            [mesh.faces + start for mesh, start in zip(meshes, self._vertex_starts[:-1], strict=True)]
-        ).astype(np.uint32)
-        self._face_starts = np.cumsum([0, *(len(mesh.faces) for mesh in meshes)])
-        self._face_areas = np.concatenate([mesh.areas for mesh in meshes])
         self._whole = np.array([[m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents)] for m in meshes])
         self.volumes = self._whole[:, 0].copy()
         """Whole volumes (h,) [m^3]."""
+        edges = _longest_edges(meshes, np.asarray(bodies), water)
+        fine = [refined(mesh.vertices, mesh.faces, edge) for mesh, edge in zip(meshes, edges, strict=True)]
+        self._vertices = np.concatenate([vertices for vertices, _ in fine])
+        self._vertex_starts = np.cumsum([0, *(len(vertices) for vertices, _ in fine)])
+        # unsigned, since Numba asks of a signed index whether it counts from the end
+        self._faces = np.concatenate(
+            [faces + start for (_, faces), start in zip(fine, self._vertex_starts[:-1], strict=True)]
+        ).astype(np.uint32)
+        self._face_starts = np.cumsum([0, *(len(faces) for _, faces in fine)])
+        a, b, c = self._vertices[self._faces.T]
+        self._face_areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
         self._waves = water.rows
         self._points = np.empty((len(self._vertices), 4))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
@@ -118,8 +120,8 @@ def submerge(
     """
     origin = np.asarray(position, float)
     turn = np.eye(3) if rotation is None else np.asarray(rotation, float)
-    if origin.shape != (3,):
-        raise MeshError(f"position has shape {origin.shape}; it must be (3,)")
+    if origin.shape != (3,) or not np.isfinite([*origin, time]).all():
+        raise MeshError(f"position is {position!r} and time {time}; they must be three finite numbers and one")
     if turn.shape != (3, 3) or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) or np.linalg.det(turn) < 0.0:
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
     with _LOCK:
@@ -155,21 +157,10 @@ def longest_edge(volume: float, area: float, water: Water) -> float:
     return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
 
 
-def _followed_together(meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water) -> list[TriMesh]:
-    """The meshes, fine enough for the waves as `longest_edge` has it for each body; themselves on still water."""
-    edges = {
-        body: longest_edge(
-            sum(mesh.volume for mesh, b in zip(meshes, bodies, strict=True) if b == body),
-            sum(mesh.area for mesh, b in zip(meshes, bodies, strict=True) if b == body),
-            water,
-        )
-        for body in set(bodies.tolist())
-    }
-    fine = []
-    for mesh, body in zip(meshes, bodies.tolist(), strict=True):
-        vertices, faces = bisected(mesh.vertices, mesh.faces, edges[body])
-        fine.append(mesh if faces is mesh.faces else TriMesh(vertices, faces))
-    return fine
+def _longest_edges(meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water) -> list[float]:
+    """`longest_edge` of each mesh, from the volume and the area of all meshes of its body."""
+    volumes, areas = np.array([mesh.volume for mesh in meshes]), np.array([mesh.area for mesh in meshes])
+    return [longest_edge(volumes[bodies == body].sum(), areas[bodies == body].sum(), water) for body in bodies]
 
 
 def wetted_surface(

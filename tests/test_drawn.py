@@ -42,6 +42,11 @@ def test_colours_are_the_models_own():
     assert shapes["pier"].colour.tolist() == [255, 0, 0, 127]
 
 
+def test_a_geoms_own_colour_wins_over_its_material_as_in_the_viewer():
+    text = MODEL.replace('rgba="0 1 0 1"', 'rgba="0 1 0 1" material="red"')
+    assert drawn(text)[1]["hull"].colour.tolist() == [0, 255, 0, 255]
+
+
 def test_every_geom_stands_where_the_engine_has_it():
     model, shapes = drawn()
     data = mujoco.MjData(model)
@@ -58,7 +63,7 @@ def test_every_geom_stands_where_the_engine_has_it():
 def test_moving_geoms_are_fine_enough_to_show_what_is_wet():
     shape = drawn()[1]["hull"]
     a, b, c = shape.vertices[shape.faces.T]
-    assert max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c)) <= 2.0 / 12.0 + 1e-12
+    assert max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c)) <= 1.4 * 2.0 / 12.0
 
 
 def test_normals_point_outward():

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import MeshError, TriMesh, shapes
-from buoyancy_mj.mesh import bisected
+from buoyancy_mj.mesh import refined
 from tests.naive import trimesh_hull
 
 
@@ -73,15 +73,25 @@ def test_its_arrays_are_copies():
     assert mesh.volume == pytest.approx(8.0)
 
 
-def test_bisecting_keeps_the_surface_and_shortens_every_edge():
-    mesh = shapes.box((1.0, 0.4, 0.02))
-    fine = TriMesh(*bisected(mesh.vertices, mesh.faces, 0.1))
-    assert fine.volume == pytest.approx(mesh.volume, rel=1e-13)
-    assert fine.area == pytest.approx(mesh.area, rel=1e-13)
-    a, b, c = fine.corners
-    assert max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c)) <= 0.1
+@pytest.mark.parametrize(("size", "edge"), [((1.0, 0.4, 0.02), 0.1), ((5.0, 0.01, 0.02), 0.05), ((1.0, 1.0, 1.0), 0.3)])
+def test_refining_keeps_the_surface_and_shortens_its_edges(size, edge):
+    mesh = shapes.box(size)
+    vertices, faces = refined(mesh.vertices, mesh.faces, edge)
+    fine = trimesh.Trimesh(vertices, faces, process=False)
+    assert fine.volume == pytest.approx(mesh.volume, rel=1e-12)
+    assert fine.area == pytest.approx(mesh.area, rel=1e-12)
+    assert (fine.face_normals[:, :] @ fine.face_normals[0]).max() == pytest.approx(1.0)
+    a, b, c = vertices[faces.T]
+    assert max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c)) <= 1.4 * edge
+    assert len(faces) < 40.0 * (mesh.area / edge**2 + sum(size) / edge)
 
 
 def test_a_mesh_that_is_fine_enough_is_left_alone():
     mesh = shapes.box((1.0, 1.0, 1.0))
-    assert bisected(mesh.vertices, mesh.faces, 10.0)[1] is mesh.faces
+    assert refined(mesh.vertices, mesh.faces, 10.0)[1] is mesh.faces
+
+
+def test_a_moved_mesh_is_a_mesh():
+    mesh = trimesh_hull(trimesh.creation.torus(1.0, 0.3)).transformed(np.diag([-1.0, -1.0, 1.0]), (1.0, 2.0, 3.0))
+    assert TriMesh(mesh.vertices, mesh.faces).volume == pytest.approx(mesh.volume)
+    assert mesh.centroid == pytest.approx([1.0, 2.0, 3.0], abs=1e-12)

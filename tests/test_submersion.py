@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, shapes, submerge, submersion
-from buoyancy_mj.mesh import bisected
+from buoyancy_mj.mesh import refined
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -250,16 +250,17 @@ def test_twelve_triangles_in_a_wave_displace_what_columns_of_water_do(wavelength
 
 
 @pytest.mark.parametrize("name", ["box", "plate", "rod", *ODD])
-def test_in_steep_waves_four_hulls_long_the_error_is_below_half_a_thousandth(name):
+def test_in_steep_waves_four_hulls_long_the_error_is_below_half_a_thousandth(name, monkeypatch):
     flat = {"box": (1.0, 0.5, 0.3), "plate": (1.0, 1.0, 0.01), "rod": (1.0, 0.03, 0.03)}
     mesh = shapes.box(flat[name]) if name in flat else ODD[name]
     wavelength = 8.0 * mesh.radius
     water = Water(waves=RegularWave(0.07 * wavelength, wavelength=wavelength))
-    edge = submersion.longest_edge(mesh.volume, mesh.area, water)
-    used = TriMesh(*bisected(mesh.vertices, mesh.faces, edge))
-    finer = TriMesh(*bisected(used.vertices, used.faces, np.sqrt(used.area / len(used.faces) / 4.0)))
-    assert len(finer.faces) > 10 * len(used.faces) or len(finer.faces) > 100_000
-    packed, reference = (submersion.PackedHulls([m], [0], [0], water) for m in (mesh, finer))
+    packed = submersion.PackedHulls([mesh], [0], [0], water)
+    # a mesh at least ten times finer
+    monkeypatch.setattr(submersion, "WAVE_TOLERANCE", submersion.WAVE_TOLERANCE / 150.0)
+    monkeypatch.setattr(submersion, "MOST_TRIANGLES", 10**9)
+    reference = submersion.PackedHulls([mesh], [0], [0], water)
+    assert len(reference._faces) > 10 * len(packed._faces)
     for seed in range(20):
         rng = np.random.default_rng(seed)
         position = rng.uniform(-1.0, 1.0, (1, 3)) * [[wavelength, wavelength, 0.5 * mesh.radius]]
@@ -285,7 +286,7 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
     mesh, turn = shapes.box(rng.uniform(0.1, 0.5, 3)), turned(seed)
     position = np.array([rng.uniform(-9, 9), 0.0, rng.uniform(-1.2, 1.2)])
     points = mesh.vertices @ turn.T + position
-    depths = water.depth(bisected(points, mesh.faces, 0.05)[0], 0.0)
+    depths = water.depth(refined(points, mesh.faces, 0.05)[0], 0.0)
     wet = submerge(mesh, position, turn, water)
     if depths.min() > 1e-3:
         assert wet.volume == pytest.approx(mesh.volume, rel=5e-4)
@@ -293,6 +294,18 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
         assert wet.volume == 0.0
     else:
         assert 0.0 <= wet.volume <= mesh.volume * (1.0 + 1e-12)
+
+
+@pytest.mark.parametrize("length", [2.0, 4.0, 10.0, 50.0])
+def test_long_slender_hulls_stay_cheap_in_waves(length):
+    water = Water(waves=RegularWave(0.3, frequency=0.5))
+    cylinder = shapes.cylinder(0.1, length / 2.0)
+    edge = submersion.longest_edge(cylinder.volume, cylinder.area, water)
+    packed = submersion.PackedHulls([cylinder], [0], [0], water)
+    # a few triangles for every edge length of each of the 64 facets
+    assert len(packed._faces) < 64 * 6 * (length / edge + 2.0)
+    beam = submersion.PackedHulls([shapes.box((50.0, 0.01, 0.01))], [0], [0], water)
+    assert len(beam._faces) < submersion.MOST_TRIANGLES
 
 
 # borders --------------------------------------------------------------------------------------------
@@ -307,7 +320,8 @@ def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
 @pytest.mark.parametrize(
     ("position", "rotation", "message"),
     [
-        ((0.0, 0.0), None, r"position has shape \(2,\); it must be \(3,\)"),
+        ((0.0, 0.0), None, r"position is \(0.0, 0.0\) and time 0.0; they must be three finite numbers and one"),
+        ((0.0, 0.0, np.nan), None, r"position is \(0.0, 0.0, nan\) and time 0.0; they must be"),
         ((0.0, 0.0, 0.0), np.diag([1.0, 1.0, -1.0]), "it must be a rotation matrix"),
         ((0.0, 0.0, 0.0), 2.0 * np.eye(3), "it must be a rotation matrix"),
         ((0.0, 0.0, 0.0), np.eye(2), "it must be a rotation matrix"),
