@@ -2,6 +2,7 @@
 
 import dataclasses
 import fnmatch
+import functools
 import warnings
 from collections.abc import Sequence
 from itertools import combinations
@@ -26,7 +27,7 @@ _MESH, _BOX, _SPHERE, _ELLIPSOID, _CYLINDER, _CAPSULE = _SOLIDS = tuple(
 )
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, eq=False)
 class Hull:
     """One geom that displaces water."""
 
@@ -43,7 +44,7 @@ class Hull:
     position: NDArray[np.float64]
     """Origin of the geom's frame in the body's (3,) [m]."""
 
-    @property
+    @functools.cached_property
     def mesh_in_body(self) -> TriMesh:
         """The mesh in the frame of the body."""
         return self.mesh.transformed(self.body_from_geom, self.position)
@@ -70,10 +71,10 @@ def displacing_hulls(model: mujoco.MjModel, geoms: str | Sequence[str] | None = 
             "no geom of this model displaces water: it has no mesh, box, sphere, ellipsoid, capsule or cylinder "
             "on a body that can move; give the vehicle such a geom, and its body a joint"
         )
-    assets: dict[int, TriMesh] = {}
+    known: dict[tuple[float, ...], TriMesh] = {}
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    hulls = tuple(_hull(model, data, g, _mesh(model, g, assets)) for g in chosen)
+    hulls = tuple(_hull(model, data, g, _mesh(model, g, known)) for g in chosen)
     _tell_overlaps(model, hulls)
     return hulls
 
@@ -165,31 +166,36 @@ def _hull(model: mujoco.MjModel, data: mujoco.MjData, geom: int, mesh: TriMesh) 
     )
 
 
-def _mesh(model: mujoco.MjModel, geom: int, assets: dict[int, TriMesh]) -> TriMesh:
-    """The hull of a geom; a mesh asset is mended once, whoever uses it."""
-    asset = int(model.geom_dataid[geom]) if model.geom_type[geom] == _MESH else -1
-    if asset in assets:
-        return assets[asset]
+def _mesh(model: mujoco.MjModel, geom: int, known: dict[tuple[float, ...], TriMesh]) -> TriMesh:
+    """The hull of a geom; one for all geoms of the same mesh asset, or of the same type and size."""
+    is_mesh = model.geom_type[geom] == _MESH
+    asset = int(model.geom_dataid[geom])
+    key = (_MESH, asset) if is_mesh else (int(model.geom_type[geom]), *model.geom_size[geom].tolist())
+    if key in known:
+        return known[key]
     arrays = geom_mesh(model, geom)
     assert arrays is not None
-    if asset < 0:
-        return TriMesh(*arrays)
+    if not is_mesh:
+        known[key] = TriMesh(*arrays)
+        return known[key]
     name = f"mesh '{model.mesh(asset).name}' of geom '{geom_name(model, geom)}'"
     mesh, notices = mended(*arrays, name=name)
     for notice in notices:
         warnings.warn(notice, BuoyancyWarning, stacklevel=2)
-    assets[asset] = mesh
+    known[key] = mesh
     return mesh
 
 
 def _tell_overlaps(model: mujoco.MjModel, hulls: Sequence[Hull]) -> None:
     """Warn of volume that two geoms of one body both displace; geoms of one body never move apart."""
-    solids = {hull.geom: _solid_in_body(hull) for hull in hulls}
+    boxes = {hull.geom: hull.mesh_in_body.bounds for hull in hulls}
+    solid = functools.cache(_solid_in_body)
     by_body: dict[int, list[tuple[float, Hull, Hull]]] = {}
     for one, two in combinations(hulls, 2):
-        if one.body != two.body or not _boxes_meet(solids[one.geom], solids[two.geom]):
+        (low, high), (other_low, other_high) = boxes[one.geom], boxes[two.geom]
+        if one.body != two.body or (low >= other_high).any() or (other_low >= high).any():
             continue
-        common = (solids[one.geom] ^ solids[two.geom]).volume()
+        common = (solid(one) ^ solid(two)).volume()
         if common > OVERLAP * min(one.mesh.volume, two.mesh.volume):
             by_body.setdefault(one.body, []).append((common, one, two))
     for body, found in by_body.items():
@@ -218,9 +224,3 @@ def _solid_in_body(hull: Hull) -> manifold3d.Manifold:
         )
         return manifold3d.Manifold()
     return solid
-
-
-def _boxes_meet(one: manifold3d.Manifold, two: manifold3d.Manifold) -> bool:
-    """Whether the bounding boxes of two solids share volume."""
-    a, b = np.array(one.bounding_box()), np.array(two.bounding_box())
-    return bool((a[:3] < b[3:]).all() and (b[:3] < a[3:]).all())

@@ -12,8 +12,8 @@ IN_DOUBT = 0.01
 """Fraction of a mesh's volume that may be in doubt before it is refused."""
 WORTH_TELLING = 1e-3
 """Fraction of a mesh's volume enclosed wrongly that is worth a notice; below it is the rays' own error."""
-SMALLEST, LARGEST = 1e-4, 1e4
-"""Longest side [m] of anything that could float and be simulated."""
+SMALLEST, SUSPICIOUS, LARGEST = 1e-4, 50.0, 1e3
+"""Longest side [m] of anything that could float; what is longer than the middle one was often drawn in millimetres."""
 RAYS = 160
 """Rays along each side of the grid that looks for space enclosed twice."""
 
@@ -33,7 +33,7 @@ def mended(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[T
         v, f = checked_arrays(vertices, faces)
     except MeshError as error:
         raise MeshError(f"{name}: {error}") from None
-    _check_scale(v[np.unique(f)], name)
+    notices += _check_scale(v[np.unique(f)], name)
     v, f = _merged(v, f)
     if not len(f):
         raise MeshError(f"{name}: all {len(np.asarray(faces))} triangles are degenerate; export the mesh again")
@@ -47,9 +47,11 @@ def mended(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[T
     lids: list[tuple[int, float]] = []
     if len(open_edges(f)):
         v, f, lids = _closed(v, f, name)
-    f, inverted = _outward(v, f)
+    f, inverted, sealed = _outward(v, f)
     if inverted:
         notices.append(f"{name}: {inverted} was inside out; its faces were turned outward")
+    if sealed:
+        notices.append(f"{name}: water cannot reach the {sealed:.3g} m^3 sealed inside it, which displace like solid")
     volume = _volume(v, f)
     if volume <= 1e-9 * float(np.prod(np.maximum(np.ptp(v, axis=0), 1e-300))):
         raise MeshError(f"{name}: it is flat and encloses no volume; give it thickness, or leave the geom out")
@@ -71,14 +73,17 @@ def mended(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[T
     return TriMesh(v, f), notices
 
 
-def _check_scale(v: NDArray[np.float64], name: str) -> None:
-    """Refuse what no unit of length explains."""
+def _check_scale(v: NDArray[np.float64], name: str) -> list[str]:
+    """Refuse what no unit of length explains, and tell what looks like millimetres."""
     longest = float(np.ptp(v, axis=0).max())
+    if SUSPICIOUS < longest <= LARGEST:
+        return [f"{name}: it is {longest:.3g} m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'"]
     if not SMALLEST <= longest <= LARGEST:
         raise MeshError(
             f"{name}: its longest side is {longest:.3g} m, possible are {SMALLEST:g} to {LARGEST:g} m; "
             "scale the mesh (a mesh drawn in millimetres wants scale='0.001 0.001 0.001')"
         )
+    return []
 
 
 def _merged(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -127,28 +132,42 @@ def _closed(
     return v, f, lids
 
 
-def _outward(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.int64], str]:
-    """Faces of every piece turned outward, those of cavities inward, and what was inside out ('' if nothing)."""
+def _outward(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.int64], str, float]:
+    """Faces of every piece turned outward, without the walls of sealed cavities.
+
+    Returns:
+        The faces, what was inside out ('' if nothing), and the volume of the cavities [m^3].
+    """
     if _volume(v, f) < 0.0:
         f, told = f[:, ::-1].copy(), "it"
     else:
         f, told = f.copy(), ""
     edges = np.concatenate([f[:, [0, 1]], f[:, [1, 2]], f[:, [2, 0]]])
     labels = trimesh.graph.connected_component_labels(edges, len(v))[f[:, 0]]
-    pieces = [np.flatnonzero(labels == label) for label in np.unique(labels)]
-    boxes = [(v[f[p]].min(axis=(0, 1)), v[f[p]].max(axis=(0, 1))) for p in pieces]
-    turned = 0
-    for i, piece in enumerate(pieces):
-        if _volume(v, f[piece]) >= 0.0:
+    pieces = [f[labels == label] for label in np.unique(labels)]
+    inward = [_volume(v, piece) < 0.0 for piece in pieces]
+    solid = [piece for piece, hollow in zip(pieces, inward, strict=True) if not hollow]
+    turned, sealed = 0, 0.0
+    for piece, hollow in zip(pieces, inward, strict=True):
+        if not hollow:
             continue
-        # an inward piece inside another is a cavity, anywhere else a mistake
-        inside = any(
-            i != j and (boxes[j][0] <= boxes[i][0]).all() and (boxes[i][1] <= boxes[j][1]).all() for j in range(len(pieces))
-        )
-        if not inside:
-            f[piece] = f[piece][:, ::-1]
+        # an inward piece inside a solid one bounds a cavity, anywhere else it is a mistake
+        if any(_winding(v, other, v[piece[0, 0]]) > 0.5 for other in solid):
+            sealed -= _volume(v, piece)
+        else:
+            solid.append(piece[:, ::-1])
             turned += 1
-    return f, told or (f"{turned} of its {len(pieces)} pieces" if turned else "")
+    return np.vstack(solid), told or (f"{turned} of its {len(pieces)} pieces" if turned else ""), sealed
+
+
+def _winding(v: NDArray[np.float64], f: NDArray[np.int64], point: NDArray[np.float64]) -> float:
+    """How often a closed surface winds around a point: its solid angle over 4 pi (van Oosterom, Strackee 1983)."""
+    a, b, c = (v - point)[f.T]
+    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    numerator = np.einsum("ij,ij->i", a, np.cross(b, c))
+    dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
+    denominator = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
+    return float(np.arctan2(numerator, denominator).sum() / (2.0 * np.pi))
 
 
 def _volume(v: NDArray[np.float64], f: NDArray[np.int64]) -> float:

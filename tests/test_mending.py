@@ -36,15 +36,37 @@ def test_faces_wound_backwards_are_turned_with_a_notice():
     assert notices == ["hull: 1 triangles were wound backwards and were turned"]
 
 
-def test_a_piece_that_is_inside_out_is_turned_and_a_cavity_is_not():
+def pair(other, inward):
+    faces = other.faces[:, ::-1] if inward else other.faces
+    return np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, faces + 8])
+
+
+def test_a_piece_that_is_inside_out_is_turned():
     beside = shapes.box((0.1, 0.1, 0.1)).transformed(np.eye(3), (3.0, 0.0, 0.0))
-    inside = shapes.box((0.1, 0.1, 0.1))
-    for other, volume, told in ((beside, 1.2 + 0.008, "1 of its 2 pieces was inside out"), (inside, 1.2 - 0.008, None)):
-        vertices = np.vstack([BOX.vertices, other.vertices])
-        faces = np.vstack([BOX.faces, other.faces[:, ::-1] + 8])
-        mesh, notices = mended(vertices, faces)
-        assert mesh.volume == pytest.approx(volume, rel=1e-12)
-        assert (told in notices[0]) if told else (notices == [])
+    mesh, notices = mended(*pair(beside, inward=True), name="pair")
+    assert mesh.volume == pytest.approx(1.2 + 0.008, rel=1e-12)
+    assert notices == ["pair: 1 of its 2 pieces was inside out; its faces were turned outward"]
+
+
+def test_water_does_not_reach_a_sealed_cavity():
+    # a pressure hull drawn with its inner wall
+    inside = shapes.box((0.9, 0.4, 0.2))
+    mesh, notices = mended(*pair(inside, inward=True), name="hull")
+    assert mesh.volume == pytest.approx(1.2, rel=1e-12)
+    assert notices == ["hull: water cannot reach the 0.576 m^3 sealed inside it, which displace like solid"]
+
+
+def test_a_ball_in_the_hole_of_a_torus_is_no_cavity():
+    torus, ball = trimesh.creation.torus(1.0, 0.2), trimesh.creation.icosphere(radius=0.3)
+    vertices = np.vstack([torus.vertices, ball.vertices])
+    mesh, notices = mended(vertices, np.vstack([torus.faces, ball.faces[:, ::-1] + len(torus.vertices)]))
+    assert mesh.volume == pytest.approx(torus.volume + ball.volume, rel=1e-12)
+    assert "1 of its 2 pieces was inside out" in notices[0]
+
+
+def test_a_mesh_that_may_be_in_millimetres_is_told():
+    _, notices = mended(BOX.vertices * 200.0, BOX.faces, name="hull")
+    assert notices == ["hull: it is 400 m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'"]
 
 
 def test_degenerate_and_repeated_triangles_go():
@@ -74,7 +96,7 @@ def test_a_mesh_that_crosses_itself_is_refused():
 
 @pytest.mark.parametrize("scale", [1e6, 1e-6])
 def test_an_absurd_scale_is_refused(scale):
-    with pytest.raises(MeshError, match=r"hull: its longest side is 2e.* m, possible are 0.0001 to 10000 m; scale the mesh"):
+    with pytest.raises(MeshError, match=r"hull: its longest side is 2e.* m, possible are 0.0001 to 1000 m; scale the mesh"):
         mended(BOX.vertices * scale, BOX.faces, name="hull")
 
 

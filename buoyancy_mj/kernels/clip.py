@@ -136,7 +136,10 @@ def submerge_hulls(
             my += part[2]
             mz += part[3]
             p += part[4]
-        # below the rounding of the sums there is no centroid to speak of
-        if v > 1e-14 * whole[h, 0]:
+        # never more than all of it, and below the rounding of the sums there is no centroid to speak of
+        if v >= whole[h, 0]:
+            out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], area, p
+            out[h, 1], out[h, 2], out[h, 3] = _placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
+        elif v > 1e-14 * whole[h, 0]:
             out[h, 0], out[h, 4], out[h, 5] = v, area, p
             out[h, 1], out[h, 2], out[h, 3] = origin[0] + mx / v, origin[1] + my / v, origin[2] + mz / v
