@@ -1,7 +1,7 @@
 """`Buoyancy`: water acting on the bodies of one MuJoCo model."""
 
 import contextlib
-import warnings
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.drag import Drag, estimated
-from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.errors import ModelError
 from buoyancy_mj.geoms import displacing_hulls
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.loads import Loads, Portion
@@ -37,7 +37,7 @@ class Buoyancy:
 
     Raises:
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips the
-            callback), no geom that displaces water, a body without mass.
+            callback), sleep enabled, no geom that displaces water, a body without mass.
         MeshError: a mesh that bounds no volume.
     """
 
@@ -53,13 +53,7 @@ class Buoyancy:
         self.water = water or Water()
         self.drag = drag
         _refuse_skipped_callback(model)
-        self._gravity()
-        if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP and self.water.waves:
-            warnings.warn(
-                "this model lets bodies at rest sleep (<flag sleep='enable'/>), and waves do not wake them; disable sleep",
-                BuoyancyWarning,
-                stacklevel=2,
-            )
+        _ = self.gravity
         self.hulls = displacing_hulls(model, geoms)
         """The hulls, in the order of the model's geoms."""
         self._hull_bodies = np.array([hull.body for hull in self.hulls])
@@ -79,6 +73,8 @@ class Buoyancy:
         self._targets = [(int(body), self._sum[body, :3], self._sum[body, 3:]) for body in self.bodies]
         self._before, self._after = np.zeros((2, model.nv))
         self._last_data = 0
+        # one set of arrays: threads that share this object take turns
+        self._lock = threading.RLock()
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Add the water's forces to `data.qfrc_passive`: an `mjcb_control`, or a call between mj_step1 and mj_step2.
@@ -87,6 +83,11 @@ class Buoyancy:
         """
         if model._address != self.model._address:
             return
+        with self._lock:
+            self._apply(data)
+
+    def _apply(self, data: mujoco.MjData) -> None:
+        """Compute the loads and add them to `data.qfrc_passive`."""
         self._compute(data)
         passive = data.qfrc_passive
         # finite differences call the callback again without computing qfrc_passive anew
@@ -94,7 +95,7 @@ class Buoyancy:
             passive[:] = self._before
         self._before[:] = passive
         for body, force, torque in self._targets:
-            mujoco.mj_applyFT(model, data, force, torque, data.xipos[body], body, passive)
+            mujoco.mj_applyFT(self.model, data, force, torque, data.xipos[body], body, passive)
         self._after[:] = passive
         self._last_data = data._address
 
@@ -122,15 +123,16 @@ class Buoyancy:
 
     def evaluate(self, data: mujoco.MjData) -> Loads:
         """The loads at the poses and velocities that `data` holds, as mj_forward left them; writes nothing."""
-        self._compute(data)
-        wet, xipos = self.packed.results.copy(), data.xipos
+        with self._lock:
+            self._compute(data)
+            wet, centres, rows = self.packed.results.copy(), self._centres.copy(), self._sum.copy()
+            causes = {cause: wrench.copy() for cause, wrench in self._causes.items()}
+        xipos = data.xipos
         force = np.zeros((len(self.hulls), 3))
-        force[:, 2] = self.water.density * self._gravity() * wet[:, clip.VOLUME]
+        force[:, 2] = self.water.density * self.gravity * wet[:, clip.VOLUME]
         arm = np.where(force[:, 2:] > 0.0, wet[:, clip.CENTROID] - xipos[self._hull_bodies], 0.0)
         hull = Portion(wet[:, clip.VOLUME], wet[:, clip.CENTROID], force, np.cross(arm, force))
-        body = Portion(
-            self._centres[:, 0].copy(), self._centres[:, 1:].copy(), self._sum[:, :3].copy(), self._sum[:, 3:].copy()
-        )
+        body = Portion(centres[:, 0], centres[:, 1:], rows[:, :3], rows[:, 3:])
         everything = np.empty((1, 4))
         wrenches.merge(wet, np.zeros(len(wet), np.int64), everything)
         torque = body.torque + np.cross(xipos - self.centre_of_mass(data), body.force)
@@ -142,7 +144,7 @@ class Buoyancy:
             total=total,
             wetted_area=wet[:, clip.WETTED_AREA],
             waterplane_area=wet[:, clip.WATERPLANE_AREA],
-            by_cause={cause: rows.copy() for cause, rows in self._causes.items()},
+            by_cause=causes,
         )
 
     @property
@@ -157,7 +159,7 @@ class Buoyancy:
 
     def _compute(self, data: mujoco.MjData) -> None:
         """Submersion, then each cause, then their sum, into the arrays made at construction."""
-        weight = self.water.density * self._gravity()
+        weight = self.water.density * self.gravity
         wet = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time)
         wrenches.merge(wet, self._hull_bodies, self._centres)
         buoyancy = self._causes["buoyancy"]
@@ -189,8 +191,13 @@ class Buoyancy:
             )
             self._sum += drag
 
-    def _gravity(self) -> float:
-        """Downward acceleration [m/s^2] of the model."""
+    @property
+    def gravity(self) -> float:
+        """Downward acceleration [m/s^2] of the model; 0 where its flags disable gravity.
+
+        Raises:
+            ModelError: it is not along -z.
+        """
         x, y, z = self.model.opt.gravity
         if self.model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
             return 0.0
@@ -200,11 +207,16 @@ class Buoyancy:
 
 
 def _refuse_skipped_callback(model: mujoco.MjModel) -> None:
-    """MuJoCo skips mjcb_control where actuation is disabled, and everything would sink without a word."""
+    """Refuse options under which everything would sink, or stay where it is, without a word."""
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
         raise ModelError(
             "this model disables actuation, and MuJoCo then skips the control callback through which water acts: "
             "remove <flag actuation='disable'/>, and disable single actuators by <option actuatorgroupdisable> instead"
+        )
+    if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP:
+        raise ModelError(
+            "this model lets bodies at rest sleep, and MuJoCo does not wake them for water that moves: "
+            "remove <flag sleep='enable'/>"
         )
 
 

@@ -5,8 +5,9 @@ import ctypes
 import mujoco
 import numpy as np
 import pytest
+from mujoco import rollout
 
-from buoyancy_mj import Buoyancy, BuoyancyWarning, Drag, LevelOscillation, ModelError, RegularWave, Water
+from buoyancy_mj import Buoyancy, Drag, LevelOscillation, ModelError, RegularWave, Water
 from buoyancy_mj.geoms import displacing_hulls
 
 BOX = """
@@ -160,11 +161,23 @@ def test_springs_and_dampers_may_be_disabled():
     assert data.qacc[2] == pytest.approx(9.81 * (24.0 / 6.0 - 1.0))
 
 
-def test_sleep_that_waves_would_not_end_is_told():
-    model, _ = box(flag="sleep='enable'")
-    Buoyancy(model)
-    with pytest.warns(BuoyancyWarning, match="lets bodies at rest sleep .* and waves do not wake them; disable sleep"):
-        Buoyancy(model, Water(waves=LevelOscillation(0.1, 0.1)))
+def test_a_model_whose_bodies_would_sleep_through_waves_is_refused():
+    with pytest.raises(ModelError, match="lets bodies at rest sleep, and MuJoCo does not wake them for water that moves"):
+        Buoyancy(box(flag="sleep='enable'")[0])
+
+
+def test_threads_that_share_one_buoyancy_do_not_disturb_each_other():
+    model, data = box("Euler")
+    starts = np.zeros((16, mujoco.mj_stateSize(model, mujoco.mjtState.mjSTATE_FULLPHYSICS)))
+    for i, start in enumerate(starts):
+        data.qpos[2] = 0.01 * i
+        mujoco.mj_getState(model, data, start, mujoco.mjtState.mjSTATE_FULLPHYSICS)
+    ends = []
+    with Buoyancy(model).installed():
+        for threads in (1, 4):
+            states, _ = rollout.rollout(model, [mujoco.MjData(model) for _ in range(threads)], starts, nstep=100)
+            ends.append(states[:, -1])
+    assert np.array_equal(*ends)
 
 
 # integrators ----------------------------------------------------------------------------------------
