@@ -1,10 +1,12 @@
 """A vehicle and an environment, joined into one MuJoCo model."""
 
+import dataclasses
 import warnings
 from pathlib import Path
 
 import mujoco
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import catalog
 from buoyancy_mj.errors import BuoyancyWarning, ModelError, SceneError, choices
@@ -15,8 +17,8 @@ ENVIRONMENT = "environment/"
 _FREE = mujoco.mjtJoint.mjJNT_FREE
 
 
-def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """The model of a scene, and its data at the start.
+def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
+    """The model of a scene, its data at the start, and how many of its bodies, from the first, are world and vehicle.
 
     The vehicle's file is the base: its options, names, keyframes and custom elements stay. Its body
     gets a free joint if it has none, and the environment is attached to the world under the prefix
@@ -32,20 +34,23 @@ def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData]:
     _leave_out_dry_land(spec, path, scene.water.level)
     bodies = len(spec.bodies)
     if scene.environment is not None:
-        surroundings = catalog.read_spec(catalog.environment_path(scene.environment, scene.folder))
-        spec.attach(surroundings, prefix=ENVIRONMENT, frame=spec.worldbody.add_frame())
+        place = catalog.environment_path(scene.environment, scene.folder)
+        try:
+            spec.attach(catalog.read_spec(place), prefix=ENVIRONMENT, frame=spec.worldbody.add_frame())
+        except ValueError as error:
+            raise ModelError(f"MuJoCo cannot join '{place}' to '{path}': {' '.join(str(error).split())}") from error
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
     model = _compiled(spec, path)
     data = mujoco.MjData(model)
     _place(model, data, scene.start, bodies)
-    return model, data
+    return model, data, bodies
 
 
 def _free(spec: mujoco.MjSpec, path: Path) -> None:
     """Give the vehicle a free joint, unless a body of it already floats or moves on joints of its own."""
-    roots = list(spec.worldbody.bodies)
+    roots = [body for body in spec.worldbody.bodies if not body.mocap]
     if not roots:
         raise ModelError(f"'{path}' has no body that could float; put the vehicle's geoms into a <body>")
     jointed = [body for body in roots if body.joints]
@@ -104,12 +109,24 @@ def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int
             raise SceneError(f"start: the vehicle has no keyframe '{start.keyframe}'; {choices(start.keyframe, names)}")
         mujoco.mj_resetDataKeyframe(model, data, names.index(start.keyframe))
         data.time = 0.0
-    free = (j for j in range(model.njnt) if model.jnt_type[j] == _FREE and model.jnt_bodyid[j] < bodies)
-    joint = next(free, None)
-    if joint is None:
+    free = [j for j in range(model.njnt) if model.jnt_type[j] == _FREE and model.jnt_bodyid[j] < bodies]
+    if not free:
+        if dataclasses.replace(start, keyframe=None) != Start():
+            warnings.warn(
+                "the vehicle hangs on joints of its own and has no free one; the position, attitude and velocity of the "
+                "start were not applied",
+                BuoyancyWarning,
+                stacklevel=4,
+            )
         return
-    q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
-    attitude = np.empty(4)
-    mujoco.mju_euler2Quat(attitude, np.array([start.yaw, start.pitch, start.roll]), "zyx")
-    data.qpos[q : q + 7] = [*start.position, *attitude]
-    data.qvel[v : v + 6] = [*start.velocity, *start.angular_velocity]
+    # the first body goes where the start has it, and takes the others along as one rigid body
+    poses = [data.qpos[model.jnt_qposadr[j] :][:7].copy() for j in free]
+    turn = Rotation.from_euler("ZYX", [start.yaw, start.pitch, start.roll])
+    moved = turn * Rotation.from_quat(poses[0][3:], scalar_first=True).inv()
+    spin = turn.apply(start.angular_velocity)
+    for joint, pose in zip(free, poses, strict=True):
+        q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
+        arm = moved.apply(pose[:3] - poses[0][:3])
+        attitude = moved * Rotation.from_quat(pose[3:], scalar_first=True)
+        data.qpos[q : q + 7] = [*(np.array(start.position) + arm), *attitude.as_quat(scalar_first=True)]
+        data.qvel[v : v + 6] = [*(np.array(start.velocity) + np.cross(spin, arm)), *attitude.inv().apply(spin)]

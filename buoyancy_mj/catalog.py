@@ -67,10 +67,15 @@ def summary(model: Path) -> str:
 def _found(name: str, shipped: dict[str, Path], base: Path, kind: str, error: type[BuoyancyError]) -> Path:
     if name in shipped:
         return shipped[name]
-    path = base / Path(name).expanduser()
-    if path.is_file():
+    try:
+        path = base / Path(name).expanduser()
+        is_file, is_dir = path.is_file(), path.is_dir()
+    except (OSError, RuntimeError, ValueError):
+        # a name that no file can have, or a home that nobody has
+        is_file = is_dir = False
+    if is_file:
         return path
-    if path.is_dir():
+    if is_dir:
         raise error(f"{kind} '{name}' is a folder; give a file, or the name of one that ships: {', '.join(shipped)}")
     raise error(f"there is no {kind} '{name}', neither a file nor one that ships; {choices(name, shipped)}")
 

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -11,6 +12,7 @@ from functools import wraps
 from pathlib import Path
 from typing import Annotated, Any
 
+import mujoco
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
@@ -22,7 +24,8 @@ from buoyancy_mj.scene import Scene, read_scene
 from buoyancy_mj.simulation import Simulation, Summary
 
 app = typer.Typer(help="Put water into MuJoCo.", no_args_is_help=True, add_completion=False, rich_markup_mode=None)
-_out, _err = Console(), Console(stderr=True)
+# what users name may hold brackets
+_out, _err = Console(markup=False), Console(stderr=True, markup=False)
 
 _SCENE = Annotated[str, typer.Argument(help="A scene file (.toml), or the name of one that ships; see 'list'.")]
 _VEHICLE = Annotated[str | None, typer.Option(help="Put this vehicle into the scene: MJCF, URDF, or the name of a model.")]
@@ -39,18 +42,26 @@ def _told(command: Callable[..., None]) -> Callable[..., None]:
     @wraps(command)
     def wrapped(*args: Any, **kwargs: Any) -> None:
         def show(message: Warning | str, *_: Any, **__: Any) -> None:
-            _err.print(f"note: {message}", style="yellow", markup=False, highlight=False, soft_wrap=True)
+            _err.print(f"note: {message}", style="yellow", highlight=False, soft_wrap=True)
 
         with warnings.catch_warnings():
             warnings.simplefilter("always")
             warnings.showwarning = show
+            # MuJoCo's own, which would else go to a file in the working folder; what diverged is told as an error
+            mujoco.set_mju_user_warning(lambda text: None if "Nan, Inf" in text else show(text))
+            signal.signal(signal.SIGTERM, _interrupt)
             try:
                 command(*args, **kwargs)
             except BuoyancyError as error:
-                _err.print(f"error: {error}", style="red", markup=False, highlight=False, soft_wrap=True)
+                _err.print(f"error: {error}", style="red", highlight=False, soft_wrap=True)
                 raise typer.Exit(1) from error
 
     return wrapped
+
+
+def _interrupt(*_: Any) -> None:
+    """End as by Ctrl-C."""
+    raise KeyboardInterrupt
 
 
 @app.command()
@@ -131,15 +142,14 @@ def _read(
     over = list(settings or [])
     if vehicle is not None:
         # relative to where the user stands, not to the scene
-        over.append(
-            f"vehicle={json.dumps(vehicle if vehicle in catalog.models() else str(catalog.model_path(vehicle).resolve()))}"
-        )
+        own = vehicle if vehicle in catalog.models() else str(catalog.model_path(vehicle).resolve())
+        over.append(f"vehicle={json.dumps(own, ensure_ascii=False)}")
     if duration is not None:
         over.append(f"duration={duration}")
     if timestep is not None:
         over.append(f"timestep={timestep}")
     if geoms:
-        over.append(f"geoms={json.dumps(geoms)}")
+        over.append(f"geoms={json.dumps(geoms, ensure_ascii=False)}")
     return read_scene(path, over)
 
 
@@ -182,7 +192,7 @@ def _progress(simulation: Simulation) -> Iterator[Callable[[float], None]]:
             yield lambda time: None
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.completed:.1f} of {task.total:.1f} s"),
         TimeRemainingColumn(),

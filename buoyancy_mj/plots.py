@@ -13,6 +13,8 @@ from buoyancy_mj.simulation import Frame
 TIMELINE = "sim_time"
 """Simulated time [s]."""
 Colour = tuple[int, int, int]
+Line = tuple[str, ...]
+"""Name of a line: its plot first, what the legend shows last."""
 COLOURS: Mapping[str, Colour] = {"weight": (235, 200, 40), "buoyancy": (60, 160, 255), "drag": (240, 90, 60)}
 """Of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
@@ -24,57 +26,56 @@ PLOTS = {
     "energy": "energy [J]",
 }
 """Titles of the plots, from top to bottom."""
-_LINES: Mapping[str, Colour] = {
-    "height/centre_of_gravity": (240, 130, 40),
-    "height/surface": (60, 160, 255),
-    "attitude/roll": (230, 80, 80),
-    "attitude/pitch": (80, 200, 100),
-    "attitude/yaw": (90, 130, 250),
-    "energy/kinetic": (230, 80, 80),
-    "energy/potential": COLOURS["weight"],
-    "energy/buoyancy": COLOURS["buoyancy"],
-    "energy/total": NEUTRAL,
-    "volume/total": NEUTRAL,
+_LINES: Mapping[Line, Colour] = {
+    ("height", "centre_of_gravity"): (240, 130, 40),
+    ("height", "surface"): (60, 160, 255),
+    ("attitude", "roll"): (230, 80, 80),
+    ("attitude", "pitch"): (80, 200, 100),
+    ("attitude", "yaw"): (90, 130, 250),
+    ("energy", "kinetic"): (230, 80, 80),
+    ("energy", "potential"): COLOURS["weight"],
+    ("energy", "buoyancy"): COLOURS["buoyancy"],
+    ("energy", "total"): NEUTRAL,
+    ("volume", "total"): NEUTRAL,
 }
 
 
-def entity(line: str) -> str:
-    """Where a line, named 'PLOT/NAME', stands in the recording; the name may hold anything."""
-    plot, _, name = line.partition("/")
-    return f"plots/{plot}/{rr.escape_entity_path_part(name)}"
+def entity(line: Line) -> str:
+    """Where a line stands in the recording; its parts may hold anything."""
+    return "/".join(["plots", *map(rr.escape_entity_path_part, line)])
 
 
-def values(frame: Frame, weight: float) -> dict[str, float]:
+def values(frame: Frame, weight: float) -> dict[Line, float]:
     """All lines at one instant; volumes in litres, angles in degrees, forces [N] as magnitudes."""
     loads, energy = frame.loads, frame.energy
     roll, pitch, yaw = np.degrees(frame.attitude).tolist()
-    named = {
-        "height/centre_of_gravity": float(frame.centre_of_mass[2]),
-        "height/surface": frame.elevation,
-        "attitude/roll": roll,
-        "attitude/pitch": pitch,
-        "attitude/yaw": yaw,
-        "energy/kinetic": energy.kinetic,
-        "energy/potential": energy.potential,
-        "energy/buoyancy": energy.buoyancy,
-        "energy/total": energy.total,
-        "force/weight": weight,
-        "volume/total": 1000.0 * float(loads.total.volume),
+    named: dict[Line, float] = {
+        ("height", "centre_of_gravity"): float(frame.centre_of_mass[2]),
+        ("height", "surface"): frame.elevation,
+        ("attitude", "roll"): roll,
+        ("attitude", "pitch"): pitch,
+        ("attitude", "yaw"): yaw,
+        ("energy", "kinetic"): energy.kinetic,
+        ("energy", "potential"): energy.potential,
+        ("energy", "buoyancy"): energy.buoyancy,
+        ("energy", "total"): energy.total,
+        ("force", "weight"): weight,
+        ("volume", "total"): 1000.0 * float(loads.total.volume),
     }
-    named |= {f"force/{cause}": float(np.linalg.norm(rows[:, :3].sum(axis=0))) for cause, rows in loads.by_cause.items()}
-    named |= {f"volume/{name}": 1000.0 * float(volume) for name, volume in zip(loads.names, loads.hull.volume, strict=True)}
+    named |= {("force", cause): float(np.linalg.norm(rows[:, :3].sum(axis=0))) for cause, rows in loads.by_cause.items()}
+    named |= {
+        ("volume", "hulls", name): 1000.0 * float(volume)
+        for name, volume in zip(loads.names, loads.hull.volume, strict=True)
+    }
     return named
 
 
-def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[str, rr.SeriesLines]:
+def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesLines]:
     """How each line is drawn."""
-    colours = {f"volume/{name}": _hue(i) for i, name in enumerate(hulls)}
-    colours |= {f"force/{cause}": COLOURS.get(cause, NEUTRAL) for cause in ("weight", *causes)}
+    colours: dict[Line, Colour] = {("volume", "hulls", name): _hue(i) for i, name in enumerate(hulls)}
+    colours |= {("force", cause): COLOURS.get(cause, NEUTRAL) for cause in ("weight", *causes)}
     colours |= _LINES
-    return {
-        line: rr.SeriesLines(colors=[colour], names=[line.partition("/")[2]], widths=[1.5])
-        for line, colour in colours.items()
-    }
+    return {line: rr.SeriesLines(colors=[colour], names=[line[-1]], widths=[1.5]) for line, colour in colours.items()}
 
 
 def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blueprint:

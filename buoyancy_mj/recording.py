@@ -1,8 +1,10 @@
 """`Recording`: a run as Rerun data; static things once, the rest per frame, scalars as columns."""
 
+import contextlib
 import os
 import sys
 import uuid
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +14,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj import plots
 from buoyancy_mj.drawn import Drawn, drawn_geoms
-from buoyancy_mj.errors import RecordingError
+from buoyancy_mj.errors import BuoyancyWarning, RecordingError
 from buoyancy_mj.geoms import body_name, geom_name
 from buoyancy_mj.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.rrd import RrdFile
@@ -51,19 +53,32 @@ class Recording:
     def __init__(self, simulation: Simulation, path: Path | None = None, *, live: bool = False) -> None:
         self.simulation = simulation
         self.path = path
+        self._file = RrdFile(path) if path is not None else None
         identity = str(uuid.uuid4())
         self._streams = [rr.RecordingStream("buoyancy_mj", recording_id=identity) for _ in range((path is not None) + live)]
+        if self._file is not None:
+            self._file.follow(self._streams[0])
         if live:
-            _spawn(self._streams[-1])
-        self._file = RrdFile(path, self._streams[0]) if path is not None else None
-        self._scalars: dict[str, list[float]] = {}
+            try:
+                _spawn(self._streams[-1])
+            except RecordingError:
+                if self._file is not None:
+                    self._file.discard()
+                raise
+        self._scalars: dict[plots.Line, list[float]] = {}
         self._times: list[float] = []
         self._surface_centre: NDArray[np.float64] | None = None
-        self._size = 2.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.buoyancy.hulls)
+        self._size = 2.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls)
         self._drawn = list(drawn_geoms(simulation.model))
         self._wet: dict[int, NDArray[np.bool_]] = {}
         self._bodies = sorted({shape.body for shape in self._drawn if shape.moves})
         self._log_static()
+
+    def __del__(self) -> None:
+        # a stream that is dropped with data still in it may wait for ever
+        for stream in getattr(self, "_streams", ()):
+            with contextlib.suppress(Exception):
+                stream.flush(timeout_sec=5.0)
 
     @property
     def closed(self) -> bool:
@@ -82,7 +97,7 @@ class Recording:
         self._log_water(frame)
         self._log_forces(frame)
         self._times.append(frame.time)
-        for line, value in plots.values(frame, self._weight()).items():
+        for line, value in plots.values(frame, self.simulation.weight).items():
             self._scalars.setdefault(line, []).append(value)
         if self._times[-1] - self._times[0] >= FLUSH_EVERY:
             self._send_scalars()
@@ -97,8 +112,11 @@ class Recording:
         if summary is not None:
             self._log("summary", rr.TextDocument(_summary_text(summary), media_type="text/markdown"), static=True)
         self._send_scalars()
-        for stream in self._streams:
-            stream.flush()
+        try:
+            for stream in self._streams:
+                stream.flush(timeout_sec=60.0)
+        except RuntimeError as error:
+            warnings.warn(f"the live viewer did not take everything: {error}", BuoyancyWarning, stacklevel=2)
         if self._file is None:
             return None
         self._file.write()
@@ -171,10 +189,8 @@ class Recording:
             if shape.geom in self._wet and np.array_equal(wet, self._wet[shape.geom]):
                 continue
             self._wet[shape.geom] = wet
-            dyed = (0.45 * shape.colour[:3] + 0.55 * WET).astype(np.uint8)
-            self._log(
-                self._entity(shape), rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour[:3]))
-            )
+            dyed = (0.45 * shape.colour + 0.55 * np.append(WET, shape.colour[3])).astype(np.uint8)
+            self._log(self._entity(shape), rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour)))
 
     def _log_water(self, frame: Frame) -> None:
         """The surface around the vehicle; it moves in whole cells, and still water only when it has to."""
@@ -204,7 +220,7 @@ class Recording:
     def _log_forces(self, frame: Frame) -> None:
         """Centres of gravity and buoyancy, and an arrow for each force, as long as half the vehicle for its weight."""
         loads, centre = frame.loads, frame.centre_of_mass
-        weight = self._weight()
+        weight = self.simulation.weight
         self._log("world/centres/gravity", rr.Points3D([centre], colors=[COLOURS["weight"]], radii=[0.02 * self._size]))
         wet = loads.hull.volume > 0.0
         hulls = loads.hull.centroid[wet]
@@ -248,9 +264,6 @@ class Recording:
         name = geom_name(self.simulation.model, shape.geom)
         return f"{self._body_entity(shape.body)}/{rr.escape_entity_path_part(name)}"
 
-    def _weight(self) -> float:
-        return self.simulation.mass * float(np.abs(self.simulation.model.opt.gravity[2]))
-
 
 def _spawn(stream: rr.RecordingStream) -> None:
     """Stream to a viewer; the one of this environment is found although the environment is not activated."""
@@ -258,6 +271,8 @@ def _spawn(stream: rr.RecordingStream) -> None:
     os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), before])
     try:
         stream.spawn()
+        # a viewer that cannot open its window is gone by now
+        stream.flush(timeout_sec=10.0)
     except Exception as error:
         first, *_ = str(error).strip().splitlines()
         raise RecordingError(f"no Rerun viewer could be started: {first}; record to a file instead (--record)") from error

@@ -21,28 +21,35 @@ _HEADER, _MESSAGE, _END = 12, struct.Struct("<QQ"), 0
 
 
 class RrdFile:
-    """What a stream logs, in a file.
+    """What a stream logs, in a file; `follow` says which stream.
 
     It grows under the name `NAME.partial.rrd` and takes its own when it is whole, so that a file
     which was there is replaced at once or not at all.
 
     Raises:
-        RecordingError: the file cannot be made.
+        RecordingError: the file cannot be made, or another run is writing it.
     """
 
-    def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
+    def __init__(self, path: Path) -> None:
         self.path = path
         self.growing = path.with_name(f"{path.stem}.partial.rrd")
-        self._stream = stream.binary_stream()
         self._written = 0
+        if path.is_dir():
+            raise RecordingError(f"cannot write '{path}': it is a folder; choose another place (--record)")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(self.growing, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
+            self._descriptor = os.open(self.growing, os.O_WRONLY | os.O_CREAT, 0o644)
         except OSError as error:
             raise RecordingError(
                 f"cannot write '{self.growing}': {error.strerror}; choose another place (--record)"
             ) from error
+        _claim(self._descriptor, self.growing)
+        os.ftruncate(self._descriptor, 0)
         self.closed = False
+
+    def follow(self, stream: rr.RecordingStream) -> None:
+        """Take what `stream` logs from now on."""
+        self._stream = stream.binary_stream()
 
     def write(self) -> None:
         """Append what has been logged since the last call.
@@ -67,14 +74,41 @@ class RrdFile:
 
         Returns:
             Where it lies.
+
+        Raises:
+            RecordingError: it cannot take its name.
         """
         os.close(self._descriptor)
         self.closed = True
-        _made_whole(self.growing)
-        if complete or not self.path.exists():
+        _make_whole(self.growing)
+        if not complete and self.path.exists():
+            return self.growing
+        try:
             os.replace(self.growing, self.path)
-            return self.path
-        return self.growing
+        except OSError as error:
+            raise RecordingError(
+                f"cannot write '{self.path}': {error.strerror}; the recording is in '{self.growing}'"
+            ) from error
+        return self.path
+
+    def discard(self) -> None:
+        """Remove the file, for a recording that never began."""
+        os.close(self._descriptor)
+        self.closed = True
+        self.growing.unlink(missing_ok=True)
+
+
+def _claim(descriptor: int, path: Path) -> None:
+    """Keep other runs from writing the same file, where the system knows locks."""
+    try:
+        import fcntl
+    except ImportError:
+        return
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        os.close(descriptor)
+        raise RecordingError(f"another run is writing '{path}'; choose another place (--record)") from error
 
 
 def _messages(chunk: bytes, *, first: bool) -> Iterator[memoryview]:
@@ -93,7 +127,7 @@ def _messages(chunk: bytes, *, first: bool) -> Iterator[memoryview]:
         place = following
 
 
-def _made_whole(path: Path) -> None:
+def _make_whole(path: Path) -> None:
     """Give the file its footer; where that fails, for want of space, it stays as it is and can still be opened."""
     whole = path.with_name(f"{path.stem}.whole.rrd")
     command = [sys.executable, "-m", "rerun", "rrd", "optimize", str(path), "-o", str(whole)]

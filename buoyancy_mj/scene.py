@@ -88,10 +88,10 @@ class Scene:
     """What relative paths in it start from."""
 
     def __post_init__(self) -> None:
-        for name, limit in (("duration", 1e6), ("timestep", 1.0), ("record_rate", 1e5)):
+        for name, least, most in (("duration", 1e-6, 1e6), ("timestep", 1e-7, 1.0), ("record_rate", 1e-6, 1e5)):
             value = getattr(self, name)
-            if not 0.0 < value <= limit:
-                raise SceneError(f"{name} is {value:g}; it must be above 0 and at most {limit:g}")
+            if not least <= value <= most:
+                raise SceneError(f"{name} is {value:g}; it must be at least {least:g} and at most {most:g}")
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}")
 
@@ -143,7 +143,7 @@ def _water(table: Mapping[str, Any], where: str) -> Water:
         place = f"{where}.waves.{i}"
         wave = dict(_table(entry, place))
         kind = wave.pop("kind", "regular")
-        if kind not in WAVES:
+        if not isinstance(kind, str) or kind not in WAVES:
             raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
         waves.append(built(WAVES[kind], wave, place))
     return built(Water, plain, where, waves=tuple(waves))
@@ -180,7 +180,7 @@ def _set(table: dict[str, Any], setting: str) -> None:
 def _entry(place: Any, part: str, key: str, *, make: bool) -> Any:
     """One step into a table or a list."""
     if isinstance(place, list):
-        if not part.isdigit() or int(part) >= len(place):
+        if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
             raise SceneError(f"cannot set '{key}': the list has {len(place)} entries, counted from 0")
         return place[int(part)]
     if not isinstance(place, dict):

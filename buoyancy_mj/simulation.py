@@ -4,16 +4,17 @@ import dataclasses
 import math
 import time
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
 
 from buoyancy_mj.assembly import assembled
 from buoyancy_mj.buoyancy import Buoyancy
 from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
-from buoyancy_mj.geoms import body_name
+from buoyancy_mj.geoms import Hull, body_name
 from buoyancy_mj.loads import Loads
 from buoyancy_mj.scene import Scene
 
@@ -118,18 +119,32 @@ class Simulation:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.model, self.data = assembled(scene)
+        self.model, self.data, bodies = assembled(scene)
         # a diverging simulation is told, not set back to the start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
         self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag)
-        self.mass = float(self.model.body_mass[self.buoyancy.floating].sum())
-        self.displacement = float(scene.water.density * self.buoyancy.packed.volumes.sum())
+        floating = self.buoyancy.floating
+        self.vehicle = floating[floating < bodies]
+        """Indices of the vehicle's bodies; what floats in the environment is none of them."""
+        self.hulls = tuple(hull for hull in self.buoyancy.hulls if hull.body < bodies)
+        """The vehicle's hulls."""
+        if not self.hulls:
+            raise ModelError("the vehicle displaces no water; choose geoms of its own (--geoms)")
+        self._masses = self.model.body_mass[self.vehicle]
+        self.mass = float(self._masses.sum())
+        """Of the vehicle [kg]."""
+        self.weight = self.mass * self.buoyancy.gravity
+        """Of the vehicle [N]."""
+        self.displacement = float(scene.water.density * sum(hull.mesh.volume for hull in self.hulls))
+        """Mass of water that its hulls displace when fully under water [kg]."""
         self._check_scale()
-        self.root = int(self.model.body_rootid[self.buoyancy.bodies[0]])
+        self.root = int(self.model.body_rootid[self.hulls[0].body])
         """Index of the vehicle's root body."""
         self._shown = mujoco.MjData(self.model)
         self._state = np.empty(mujoco.mj_stateSize(self.model, mujoco.mjtState.mjSTATE_INTEGRATION))
+        # corners of the convex hulls: the deepest point is one of them
+        self._corners = [(body, _corners(self.hulls, body)) for body in sorted({hull.body for hull in self.hulls})]
         self._heights: list[tuple[float, float]] = []
         self._peak_draft, self._draft = -math.inf, math.nan
         self._wall = 0.0
@@ -140,8 +155,8 @@ class Simulation:
         self.buoyancy.evaluate(self._shown)
         scene.water.elevation(0.0, 0.0, 0.0)
         fixed = self.model.body_weldid[self.model.geom_bodyid] == 0
-        floating = np.isin(self.model.geom_bodyid, self.buoyancy.floating)
-        self._touches = fixed[:, None] & floating[None, :]
+        own = np.isin(self.model.geom_bodyid, self.vehicle)
+        self._touches = fixed[:, None] & own[None, :]
         self._touches |= self._touches.T
 
     @property
@@ -178,6 +193,8 @@ class Simulation:
         with self.buoyancy.installed():
             mujoco.mj_step(self.model, self.data)
         self._check_finite()
+        # the step leaves the poses of its beginning
+        self._watch(self.data, float(self.data.time) - self.model.opt.timestep)
         pairs = self.data.contact.geom
         if len(pairs) and self._touches[pairs[:, 0], pairs[:, 1]].any():
             self._contact_steps += 1
@@ -188,12 +205,11 @@ class Simulation:
         """What came of the frames so far."""
         end = self.data.time
         late = [height for at, height in self._heights if at >= end - LAST - 1e-9]
-        gravity = -float(self.model.opt.gravity[2])
         return Summary(
             scene=self.scene.title,
             mass=self.mass,
             displacement=self.displacement,
-            net_weight=(self.mass - self.displacement) * gravity,
+            net_weight=self.weight - self.displacement * self.buoyancy.gravity,
             peak_draft=self._peak_draft,
             final_draft=self._draft,
             cog_z_range=max(late) - min(late) if late else math.nan,
@@ -212,7 +228,7 @@ class Simulation:
             mujoco.mj_forward(self.model, self._shown)
         data, water, now = self._shown, self.scene.water, float(self._shown.time)
         loads = self.buoyancy.evaluate(data)
-        centre = self.buoyancy.centre_of_mass(data)
+        centre = self.centre_of_mass(data)
         elevation = float(water.elevation(centre[0], centre[1], now))
         lifted = water.depth(loads.hull.centroid, now)
         energy = Energy(
@@ -220,19 +236,22 @@ class Simulation:
             potential=float(data.energy[0]),
             buoyancy=float(np.nansum(loads.hull.force[:, 2] * lifted)),
         )
-        self._draft = self._lowest(data, now)
-        self._peak_draft = max(self._peak_draft, self._draft)
-        self._heights.append((now, float(centre[2])))
+        self._watch(data, now)
         attitude = _roll_pitch_yaw(data.xmat[self.root])
         return Frame(now, data, loads, centre, attitude, self._draft, elevation, energy)
 
-    def _lowest(self, data: mujoco.MjData, now: float) -> float:
-        """Depth [m] of the deepest vertex of all hulls."""
-        deepest = -math.inf
-        for hull in self.buoyancy.hulls:
-            points = hull.mesh.vertices @ data.geom_xmat[hull.geom].reshape(3, 3).T + data.geom_xpos[hull.geom]
-            deepest = max(deepest, float(self.scene.water.depth(points, now).max()))
-        return deepest
+    def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
+        """Of the vehicle (3,) [m], world frame."""
+        return self._masses @ data.xipos[self.vehicle] / self.mass
+
+    def _watch(self, data: mujoco.MjData, now: float) -> None:
+        """Keep what the summary tells of the poses in `data`."""
+        self._draft = max(
+            float(self.scene.water.depth(corners @ data.xmat[body].reshape(3, 3).T + data.xpos[body], now).max())
+            for body, corners in self._corners
+        )
+        self._peak_draft = max(self._peak_draft, self._draft)
+        self._heights.append((now, float(self.centre_of_mass(data)[2])))
 
     def _check_scale(self) -> None:
         """A slip of units gives a hull a thousand million times its volume."""
@@ -269,6 +288,12 @@ class Simulation:
                     f"'{body_name(self.model, body)}' is not a finite, sensible number; try a smaller timestep "
                     f"(now {self.scene.timestep:g} s) or another integrator (now {self.scene.integrator})"
                 )
+
+
+def _corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:
+    """Vertices (n, 3) [m] of the convex hulls of a body's hulls, in its frame."""
+    meshes = [hull.mesh_in_body for hull in hulls if hull.body == body]
+    return np.vstack([mesh.vertices[ConvexHull(mesh.vertices).vertices] for mesh in meshes])
 
 
 def _roll_pitch_yaw(rotation: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -41,8 +41,8 @@ def view(simulation: Simulation) -> None:
     except Exception as error:
         raise ModelError(f"MuJoCo's viewer could not be opened: {error}; use 'run', which needs none") from error
     with handle as viewer:
-        size = 4.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.buoyancy.hulls)
-        viewer.cam.lookat[:] = simulation.buoyancy.centre_of_mass(data)
+        size = 4.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls)
+        viewer.cam.lookat[:] = simulation.centre_of_mass(data)
         viewer.cam.distance = size
         viewer.cam.azimuth, viewer.cam.elevation = 140.0, -20.0
         while viewer.is_running():
@@ -50,9 +50,7 @@ def view(simulation: Simulation) -> None:
             with viewer.lock():
                 while data.time < until:
                     simulation.step()
-                draw_surface(
-                    viewer.user_scn, simulation.scene.water, simulation.buoyancy.centre_of_mass(data), size, data.time
-                )
+                draw_surface(viewer.user_scn, simulation.scene.water, simulation.centre_of_mass(data), size, data.time)
             viewer.sync()
             time.sleep(max(0.0, FRAME_TIME - (time.perf_counter() - started)))
 

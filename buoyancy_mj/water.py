@@ -12,6 +12,8 @@ from scipy.optimize import brentq
 from buoyancy_mj.errors import WaterError
 from buoyancy_mj.kernels import waves as kernels
 
+SMALLEST, LARGEST = 1e-6, 1e6
+"""Bounds of frequencies, periods, wavelengths, depths and levels, in SI units: none in nature comes near them."""
 GRAVITY = 9.81
 """Acceleration [m/s^2] in the dispersion relation when nobody says otherwise: MuJoCo's default."""
 
@@ -59,15 +61,19 @@ class RegularWave:
         _finite("direction", self.direction)
         _finite("phase", self.phase)
         _finite("gravity", self.gravity, above=0.0)
-        if not self.depth > 0.0:
-            raise WaterError(f"wave depth is {self.depth} m; it must be above 0 (inf is deep water)")
+        if isinstance(self.depth, bool) or not isinstance(self.depth, int | float) or not self.depth >= SMALLEST:
+            raise WaterError(f"wave depth is {self.depth!r}; it must be at least {SMALLEST:g} m (inf is deep water)")
+        if self.amplitude > self.depth:
+            raise WaterError(
+                f"amplitude is {self.amplitude} m in water {self.depth} m deep; the trough would lie below the bottom"
+            )
         given = {name: getattr(self, name) for name in ("frequency", "period", "wavelength")}
         told = {name: value for name, value in given.items() if not _is_nan(value)}
         if len(told) != 1:
             got = " and ".join(told) or "none"
             raise WaterError(f"a regular wave got {got}; give exactly one of frequency [Hz], period [s], wavelength [m]")
         (name, value), *_ = told.items()
-        _finite(name, value, above=0.0)
+        _finite(name, value, least=SMALLEST, most=LARGEST)
         # the other two follow
         if name == "wavelength":
             k = 2.0 * math.pi / value
@@ -80,6 +86,8 @@ class RegularWave:
         if name != "wavelength":
             k = wavenumber(2.0 * math.pi * frequency, self.depth, self.gravity)
             object.__setattr__(self, "wavelength", 2.0 * math.pi / k)
+        if not SMALLEST**2 <= self.wavelength <= LARGEST**3:
+            raise WaterError(f"a wave with a {name} of {value} would be {self.wavelength:.3g} m long; give another {name}")
 
     @property
     def rows(self) -> NDArray[np.float64]:
@@ -109,7 +117,7 @@ class LevelOscillation:
 
     def __post_init__(self) -> None:
         _finite("amplitude", self.amplitude, least=0.0)
-        _finite("frequency", self.frequency, above=0.0)
+        _finite("frequency", self.frequency, least=SMALLEST, most=LARGEST)
         _finite("phase", self.phase)
 
     @property
@@ -137,15 +145,18 @@ class Water:
 
     def __post_init__(self) -> None:
         _finite("density", self.density, above=0.0)
-        _finite("level", self.level)
-        waves = (self.waves,) if hasattr(self.waves, "rows") else tuple(self.waves)
+        _finite("level", self.level, least=-LARGEST, most=LARGEST)
+        waves = (self.waves,) if hasattr(self.waves, "rows") or not isinstance(self.waves, Sequence) else tuple(self.waves)
         for wave in waves:
             if not hasattr(wave, "rows"):
                 raise WaterError(f"{wave!r} is no wave; possible are RegularWave and LevelOscillation")
         object.__setattr__(self, "waves", waves)
-        current = np.asarray(self.current, float)
+        try:
+            current = np.asarray(self.current, float)
+        except (TypeError, ValueError):
+            current = np.array(np.nan)
         if current.shape != (3,) or not np.isfinite(current).all():
-            raise WaterError(f"current is {self.current}; it must be three finite numbers [m/s]")
+            raise WaterError(f"current is {self.current!r}; it must be three finite numbers [m/s]")
         object.__setattr__(self, "current", tuple(current.tolist()))
 
     @property
@@ -195,7 +206,7 @@ def _is_nan(value: object) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 
-def _finite(name: str, value: object, *, above: float = -math.inf, least: float = -math.inf) -> None:
+def _finite(name: str, value: object, *, above: float = -math.inf, least: float = -math.inf, most: float = math.inf) -> None:
     """Refuse what is not a finite number in range."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
         raise WaterError(f"{name} is {value!r}; it must be a finite number")
@@ -203,3 +214,5 @@ def _finite(name: str, value: object, *, above: float = -math.inf, least: float 
         raise WaterError(f"{name} is {value}; it must be above {above:g}")
     if not value >= least:
         raise WaterError(f"{name} is {value}; it must be at least {least:g}")
+    if not value <= most:
+        raise WaterError(f"{name} is {value}; it must be at most {most:g}")

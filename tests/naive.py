@@ -11,6 +11,9 @@ from buoyancy_mj import TriMesh, submerge
 def sliced(mesh, position, rotation, level=0.0):
     """Volume and centroid of the capped slice under a level, by trimesh."""
     solid = trimesh.Trimesh(mesh.vertices @ rotation.T + position, mesh.faces, process=False)
+    if (solid.vertices[:, 2] >= level).all():
+        # trimesh has no mesh of nothing
+        return 0.0, np.full(3, np.nan)
     wet = solid.slice_plane([0.0, 0.0, level], [0.0, 0.0, -1.0], cap=True)
     return wet.volume, wet.center_mass
 

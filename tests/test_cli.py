@@ -108,9 +108,12 @@ def test_notices_go_to_the_standard_error(run, tmp_path):
         (("auv_waves", "--vehicle", "fixed.xml"), r"error: '.*fixed.xml' has no body that could float"),
         (("auv_waves", "--vehicle", "up.xml"), r"error: gravity is 0 0 9.81; water needs it along -z"),
         (("auv_waves", "--set", "watr.level=1"), r"error: scene 'auv_waves': unknown key 'watr'; did you mean 'water'\?"),
-        (("auv_waves", "--duration", "-1"), r"duration is -1; it must be above 0"),
+        (("auv_waves", "--duration", "-1"), r"duration is -1; it must be at least 1e-06"),
         (("auv_waves", "--duration", "nan"), r"duration is nan"),
         (("auv_waves", "--geoms", "hul*"), r"error: no moving geom matches 'hul\*'.*possible: ballast_port"),
+        (("auv_waves", "--vehicle", "~nobody-here/a.xml"), r"error: there is no vehicle '~nobody-here/a.xml'"),
+        (("x" * 300,), r"error: there is no scene 'xxx"),
+        (("auv_waves", "--record", "folder.rrd"), r"error: cannot write 'folder.rrd': it is a folder"),
         (("auv_waves", "--record", "x.mp4"), r"error: --record is 'x.mp4'; a recording's name ends in .rrd"),
         (("auv_waves", "--record", "x.rrd", "--no-record"), r"error: --record and --no-record contradict each other"),
     ],
@@ -125,11 +128,12 @@ def test_bad_input_gets_one_sentence_and_leaves_nothing(run, tmp_path, arguments
         f"""<mujoco><asset><mesh name="tub" inertia="shell" vertex="{vertices}" face="{faces}"/></asset>
         <worldbody><body><geom name="tub" type="mesh" mesh="tub"/></body></worldbody></mujoco>"""
     )
+    (tmp_path / "folder.rrd").mkdir()
     before = set(tmp_path.rglob("*"))
     extra = () if "--no-record" in arguments or "--record" in arguments else ("--no-record",)
     result = run("run", *arguments, *extra)
     one_sentence(result, message)
-    assert set(tmp_path.rglob("*")) - before <= {tmp_path / "MUJOCO_LOG.TXT"}
+    assert set(tmp_path.rglob("*")) == before
 
 
 def test_a_diverging_run_keeps_its_recording(run, tmp_path):
@@ -138,14 +142,24 @@ def test_a_diverging_run_keeps_its_recording(run, tmp_path):
     arguments = ("--vehicle", "stiff.xml", "--set", "timestep=0.1", "--set", "integrator=Euler", "--set", "drag=false")
     result = run("run", "auv_waves", *arguments, "--record", "out.rrd")
     assert result.exit_code == 1
-    assert re.search(r"the recording up to .* s is in 'out.rrd'\nerror: the simulation diverged at", result.stderr), (
-        result.stderr
-    )
+    assert re.search(r"the recording up to .* s is in 'out.rrd'\nerror: the simulation diverged at .*\n$", result.stderr)
+    assert "Nan, Inf" not in result.stderr
+    assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
     assert (tmp_path / "out.rrd").stat().st_size > 0
 
 
+def test_brackets_and_pictures_in_names_are_only_text(run, tmp_path):
+    (tmp_path / "boat \U0001f6a4.xml").write_text(BOX)
+    arguments = ("--vehicle", "boat \U0001f6a4.xml", "--set", 'title="a [/b] c"', "--record", "a[red]b.rrd")
+    result = run("run", "auv_waves", "--duration", "0.05", *arguments)
+    assert result.exit_code == 0, result.output
+    assert "a [/b] c" in result.stdout
+    assert "a[red]b.rrd" in result.stdout
+
+
 @pytest.mark.slow
-def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path):
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
     command = [sys.executable, "-m", "buoyancy_mj", "run", "auv_waves", "--duration", "10000", "--record", "out.rrd"]
     process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True)
     partial = tmp_path / "out.partial.rrd"
@@ -153,7 +167,7 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path):
     while not (partial.exists() and partial.stat().st_size > 200_000):
         assert time.monotonic() < deadline
         time.sleep(0.1)
-    os.kill(process.pid, signal.SIGINT)
+    os.kill(process.pid, sent)
     _, told = process.communicate(timeout=60)
     assert process.returncode == 130
     assert re.search(r"the recording up to .* s is in 'out.rrd'", told), told

@@ -1,9 +1,11 @@
 """Recordings, as `rerun` reads them back."""
 
+import os
 import re
 import resource
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -58,7 +60,7 @@ def test_it_holds_everything_that_was_promised(whole):
         "/world/forces/buoyancy",
         "/world/forces/drag",
         "/plots/volume/total",
-        "/plots/volume/glass",
+        "/plots/volume/hulls/glass",
         "/plots/force/buoyancy",
         "/plots/force/drag",
         "/plots/force/weight",
@@ -117,12 +119,21 @@ def test_a_whole_recording_is_replaced_by_a_whole_one(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+@pytest.mark.slow
 def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
-    path = tmp_path / "run.rrd"
-    recorded(path, settings=["duration=0.6", "record_rate=60"], frames=36)
+    command = [sys.executable, "-m", "buoyancy_mj", "run", "auv_waves", "--duration", "10000", "--record", "run.rrd"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True)
     partial = tmp_path / "run.partial.rrd"
-    assert partial.stat().st_size > 0
-    assert "/world/bodies/hourglass" in entities(rerun("print", "-vv", str(partial)).stdout)
+    deadline = time.monotonic() + 60.0
+    while not (partial.exists() and partial.stat().st_size > 4_000_000):
+        assert time.monotonic() < deadline
+        time.sleep(0.1)
+    process.kill()
+    process.wait(timeout=30)
+    assert "/world/bodies/sauvc_auv" in entities(rerun("print", "-vv", str(partial)).stdout)
+    # and another run may take its place
+    recorded(tmp_path / "run.rrd")
+    assert rerun("verify", str(tmp_path / "run.rrd")).returncode == 0
 
 
 FULL_DISK = """
@@ -172,10 +183,30 @@ def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
 def test_names_may_hold_anything(tmp_path):
     (tmp_path / "odd.xml").write_text(
         """<mujoco><worldbody><body name="my boat/2"><freejoint/><geom name="bow \u00e9 [1]" type="box" size=".2 .1 .1"
-        density="300"/><geom type="box" size=".05 .05 .05" pos="0 0 .15" density="300"/></body></worldbody></mujoco>"""
+        density="300"/><geom type="box" size=".05 .05 .05" pos="0 0 .15" density="300"/>
+        <geom name="total" type="box" size=".05 .05 .05" pos="0 0 -.15" density="300"/></body></worldbody></mujoco>"""
     )
     recorded(tmp_path / "run.rrd", settings=["duration=0.1", f"vehicle='{tmp_path / 'odd.xml'}'"])
     assert rerun("verify", str(tmp_path / "run.rrd")).returncode == 0
     found = rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout.replace("\\", "")
     assert "/world/bodies/my boat/2/bow \u00e9 [1]" in found
-    assert "/plots/volume/my boat/2/box 1" in found
+    assert "/plots/volume/hulls/total" in found
+    assert "/plots/volume/hulls/my boat/2/box 1" in found
+
+
+def test_two_runs_do_not_write_one_file(tmp_path):
+    simulation, recording = recorded(tmp_path / "run.rrd", frames=3)
+    with pytest.raises(RecordingError, match=r"another run is writing '.*run.partial.rrd'; choose another place"):
+        Recording(simulation, tmp_path / "run.rrd")
+    assert recording.close(simulation.summary()) == tmp_path / "run.rrd"
+
+
+@pytest.mark.slow
+def test_a_live_viewer_that_cannot_open_is_told_and_leaves_nothing(tmp_path):
+    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    command = [sys.executable, "-m", "buoyancy_mj", "run", "hourglass_drop_still", "--live", "--record", "out.rrd"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=120)
+    assert done.returncode == 1
+    assert "error: no Rerun viewer could be started" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []

@@ -94,7 +94,10 @@ def test_any_field_can_be_set(folder, setting, look):
         ("water.waves=3", "water: waves is 3; needed is a list of tables"),
         ("water=3", "water is 3; needed is a table"),
         ("water.density=-1", "density is -1.0; it must be above 0"),
-        ("duration=0", "duration is 0; it must be above 0"),
+        ("duration=0", "duration is 0; it must be at least 1e-06 and at most 1e+06"),
+        ("timestep=1e-310", "timestep is 1e-310; it must be at least 1e-07 and at most 1"),
+        ("water.waves.0.kind=[1]", "water.waves.0: unknown kind [1]; possible: level, regular"),
+        ("water.waves.².amplitude=1", "cannot set 'water.waves.²': the list has 2 entries, counted from 0"),
         ("duration=long", "duration is 'long'; needed is a number"),
         ("timestep=true", "timestep is True; needed is a number"),
         ("title=3", "title is 3; needed is a text in quotes"),
@@ -184,6 +187,49 @@ def test_a_vehicle_on_joints_of_its_own_keeps_them(folder):
         pass
 
 
+def test_a_start_that_cannot_be_applied_is_told(folder):
+    xml = BOX.format(joint='<joint type="slide" axis="0 0 1"/>', more="", rest="")
+    with pytest.warns(BuoyancyWarning, match="hangs on joints of its own and has no free one; the position, attitude"):
+        simulation_of(folder, xml, "start.position=[0, 0, 1]")
+
+
+def test_several_free_bodies_start_as_one_rigid_body(folder):
+    pair = """<mujoco><worldbody><body name="a" pos="1 0 0"><freejoint/><geom size=".1"/></body>
+    <body name="b" pos="1 .5 0"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    data = simulation_of(
+        folder, pair, "start.position=[0, 0, 5]", f"start.yaw={math.pi / 2}", "start.angular_velocity=[0, 0, 2]"
+    ).data
+    assert data.qpos[:3] == pytest.approx([0.0, 0.0, 5.0])
+    assert data.qpos[7:10] == pytest.approx([-0.5, 0.0, 5.0])
+    assert data.qvel[6:12] == pytest.approx([0.0, -1.0, 0.0, 0.0, 0.0, 2.0])
+
+
+def test_a_mocap_body_is_no_vehicle(folder):
+    xml = BOX.format(joint="", more="", rest="").replace("<worldbody>", '<worldbody><body name="target" mocap="true"/>')
+    simulation = simulation_of(folder, xml, "start.position=[0, 0, 1]")
+    assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 1.0])
+
+
+def test_an_environment_that_does_not_fit_is_told(folder):
+    (folder / "pool.xml").write_text(
+        """<mujoco><worldbody><geom type="plane" size="1 1 1"/></worldbody>
+        <keyframe><key name="e" qpos="1 2"/></keyframe></mujoco>"""
+    )
+    with pytest.raises(ModelError, match=r"MuJoCo cannot (join|compile) .*[Kk]eyframe"):
+        Simulation(read_scene(folder / "scene.toml", ["environment=pool.xml"]))
+
+
+def test_the_summary_does_not_depend_on_the_record_rate(folder):
+    summaries = []
+    for rate in (100, 0.3):
+        settings = ["start.position=[0, 0, 0.5]", "start.roll=0.3", "duration=3", f"record_rate={rate}"]
+        simulation = Simulation(read_scene(folder / "scene.toml", settings))
+        list(simulation.frames())
+        summaries.append(simulation.summary())
+    for name in ("peak_draft", "final_draft", "cog_z_range"):
+        assert getattr(summaries[0], name) == pytest.approx(getattr(summaries[1], name), abs=1e-12)
+
+
 def test_two_bodies_without_joints_are_refused(folder):
     bodies = "<body name='a'><geom size='.1'/></body><body name='b'><geom size='.1'/></body>"
     two = f"<mujoco><worldbody>{bodies}</worldbody></mujoco>"
@@ -242,6 +288,10 @@ def test_the_environment_is_attached_under_its_own_prefix(folder):
     assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 0.3])
     assert simulation.data.qpos[7:10] == pytest.approx([3.0, 0.0, 0.0])
     assert [hull.name for hull in simulation.buoyancy.hulls] == ["box", "environment/buoy"]
+    # and is none of the vehicle's
+    list(simulation.frames())
+    assert simulation.summary().mass == pytest.approx(4.0)
+    assert simulation.summary().displacement == pytest.approx(1025.0 * 0.012)
 
 
 def test_a_vehicle_a_thousand_times_too_large_is_told(folder):

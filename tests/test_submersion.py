@@ -229,7 +229,10 @@ def test_the_waterplane_area_is_how_volume_grows_with_draft():
 
 
 def test_a_flat_wave_is_still_water():
-    for water in (Water(waves=RegularWave(0.0, period=2.0)), Water(waves=RegularWave(0.3, wavelength=1e9, phase=np.pi / 2))):
+    for water in (
+        Water(waves=RegularWave(0.0, period=2.0)),
+        Water(waves=RegularWave(0.01, wavelength=1e6, phase=np.pi / 2)),
+    ):
         wet, still = submerge(TORUS, (0, 0, 0.2), turned(1), water), submerge(TORUS, (0, 0, 0.2), turned(1))
         assert wet.volume == pytest.approx(still.volume, rel=1e-7)
         assert wet.centroid == pytest.approx(still.centroid, abs=1e-7)
