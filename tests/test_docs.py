@@ -17,7 +17,7 @@ README = (ROOT / "README.md").read_text()
 def test_the_ten_lines_run(tmp_path, monkeypatch, capsys):
     (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     vehicle = catalog.models()["sauvc_auv"]
-    exec(compile(code.replace("my_auv.xml", str(vehicle)), "README.md", "exec"), {})
+    exec(compile(code.replace("my_auv.xml", vehicle.as_posix()), "README.md", "exec"), {})
     assert "m^3 under water" in capsys.readouterr().out
 
 
@@ -25,8 +25,8 @@ def test_the_ten_lines_run(tmp_path, monkeypatch, capsys):
 def test_the_command_lines_are_understood(line, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     vehicle = catalog.models()["hourglass"]
-    words = shlex.split(line.replace("path/to/my_vehicle.xml", str(vehicle)), comments=True)
-    words = [word for word in words if word != "--live"]
+    words = shlex.split(line, comments=True)
+    words = [word.replace("path/to/my_vehicle.xml", str(vehicle)) for word in words if word != "--live"]
     result = CliRunner().invoke(app, [*words, "--duration", "0.05"])
     assert result.exit_code == 0, result.output
 
