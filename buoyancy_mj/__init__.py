@@ -10,6 +10,8 @@ from buoyancy_mj.errors import ModelError as ModelError
 from buoyancy_mj.errors import RecordingError as RecordingError
 from buoyancy_mj.errors import SceneError as SceneError
 from buoyancy_mj.errors import WaterError as WaterError
+from buoyancy_mj.frames import Frame as Frame
+from buoyancy_mj.frames import Summary as Summary
 from buoyancy_mj.loads import Loads as Loads
 from buoyancy_mj.loads import Portion as Portion
 from buoyancy_mj.mending import mended as mended

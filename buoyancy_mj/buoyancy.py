@@ -52,7 +52,7 @@ class Buoyancy:
         self.model = model
         self.water = water or Water()
         self.drag = drag
-        _refuse_skipped_callback(model)
+        _refuse_options(model)
         _ = self.gravity
         self.hulls = displacing_hulls(model, geoms)
         """The hulls, in the order of the model's geoms."""
@@ -106,7 +106,7 @@ class Buoyancy:
         Raises:
             ModelError: actuation has been disabled: MuJoCo would skip the callback.
         """
-        _refuse_skipped_callback(self.model)
+        _refuse_options(self.model)
         previous = mujoco.get_mjcb_control()
         chained = _callable(previous)
 
@@ -206,7 +206,7 @@ class Buoyancy:
         return -float(z)
 
 
-def _refuse_skipped_callback(model: mujoco.MjModel) -> None:
+def _refuse_options(model: mujoco.MjModel) -> None:
     """Refuse options under which everything would sink, or stay where it is, without a word."""
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
         raise ModelError(

@@ -20,8 +20,9 @@ from rich.table import Table
 
 from buoyancy_mj import catalog
 from buoyancy_mj.errors import BuoyancyError, SceneError
+from buoyancy_mj.frames import Summary
 from buoyancy_mj.scene import Scene, read_scene
-from buoyancy_mj.simulation import Simulation, Summary
+from buoyancy_mj.simulation import Simulation
 
 app = typer.Typer(help="Put water into MuJoCo.", no_args_is_help=True, add_completion=False, rich_markup_mode=None)
 # what users name may hold brackets

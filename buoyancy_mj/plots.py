@@ -8,7 +8,7 @@ import rerun.blueprint as rrb
 import trimesh
 from numpy.typing import NDArray
 
-from buoyancy_mj.simulation import Frame
+from buoyancy_mj.frames import Frame
 
 TIMELINE = "sim_time"
 """Simulated time [s]."""

@@ -15,10 +15,11 @@ from numpy.typing import NDArray
 from buoyancy_mj import plots
 from buoyancy_mj.drawn import Drawn, drawn_geoms
 from buoyancy_mj.errors import BuoyancyWarning, RecordingError
+from buoyancy_mj.frames import Frame, Summary
 from buoyancy_mj.geoms import body_name, geom_name
 from buoyancy_mj.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.rrd import RrdFile
-from buoyancy_mj.simulation import Frame, Simulation, Summary
+from buoyancy_mj.simulation import Simulation
 from buoyancy_mj.submersion import wetted_surface
 
 SURFACE_CELLS = 24

@@ -1,6 +1,7 @@
 """`Water` and its waves: everything the sea is."""
 
 import dataclasses
+import functools
 import math
 from collections.abc import Sequence
 from typing import Protocol
@@ -159,12 +160,12 @@ class Water:
             raise WaterError(f"current is {self.current!r}; it must be three finite numbers [m/s]")
         object.__setattr__(self, "current", tuple(current.tolist()))
 
-    @property
+    @functools.cached_property
     def rows(self) -> NDArray[np.float64]:
         """All waves as rows (n, 6), see `Wave`."""
         return np.concatenate([np.zeros((0, 6)), *(wave.rows for wave in self.waves)])  # type: ignore[union-attr]
 
-    @property
+    @functools.cached_property
     def curvature(self) -> float:
         """Bound of the surface's curvature, sum of A k^2 [1/m]."""
         rows = self.rows
