@@ -53,7 +53,6 @@ class Recording:
 
     def __init__(self, simulation: Simulation, path: Path | None = None, *, live: bool = False) -> None:
         self.simulation = simulation
-        self.path = path
         self._file = RrdFile(path) if path is not None else None
         identity = str(uuid.uuid4())
         self._streams = [rr.RecordingStream("buoyancy_mj", recording_id=identity) for _ in range((path is not None) + live)]
