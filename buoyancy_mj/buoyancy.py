@@ -14,7 +14,7 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.geoms import displacing_hulls
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.loads import Loads, Portion
-from buoyancy_mj.submersion import PackedHulls
+from buoyancy_mj.methods import Method, method_of
 from buoyancy_mj.water import Water
 
 
@@ -34,11 +34,14 @@ class Buoyancy:
         water: fresh and still at z = 0 if None.
         geoms: which geoms displace water, see `geoms.displacing_hulls`.
         drag: how damping is estimated; None for none.
+        method: how the submersion is found: "exact", or the source paper's "convex_hull" and
+            "sections", or one of `Exact`, `ConvexHull`, `Sections` with options.
 
     Raises:
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips the
             callback), sleep enabled, no geom that displaces water, a body without mass.
         MeshError: a mesh that bounds no volume.
+        MethodError: there is no such method.
     """
 
     def __init__(
@@ -48,17 +51,19 @@ class Buoyancy:
         *,
         geoms: str | Sequence[str] | None = None,
         drag: Drag | None = Drag(),
+        method: str | Method = "exact",
     ) -> None:
         self.model = model
         self.water = water or Water()
         self.drag = drag
+        self.method = method_of(method)
         _refuse_options(model)
         _ = self.gravity
         self.hulls = displacing_hulls(model, geoms)
         """The hulls, in the order of the model's geoms."""
         self._hull_bodies = np.array([hull.body for hull in self.hulls])
         frames = [hull.geom for hull in self.hulls]
-        self.packed = PackedHulls([hull.mesh for hull in self.hulls], frames, self._hull_bodies, self.water)
+        self.packed = self.method.packed([hull.mesh for hull in self.hulls], frames, self._hull_bodies, self.water)
         self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
         self.bodies = np.array(sorted({hull.body for hull in self.hulls}))
         """Indices of the bodies that have hulls."""

@@ -34,6 +34,9 @@ _SET = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any field, as water.waves.0.amplitude=0.1.")
 ]
 _GEOMS = Annotated[list[str] | None, typer.Option(help="Which geoms displace water: name globs ('hull*') or group:N.")]
+_METHOD = Annotated[
+    str | None, typer.Option(help="How the submersion is found: exact (the default), convex_hull or sections.")
+]
 _TIMESTEP = Annotated[float | None, typer.Option(help="MuJoCo's timestep [s].")]
 
 
@@ -72,6 +75,7 @@ def run(
     vehicle: _VEHICLE = None,
     duration: Annotated[float | None, typer.Option(help="Simulated time [s].")] = None,
     timestep: _TIMESTEP = None,
+    method: _METHOD = None,
     record: Annotated[Path | None, typer.Option(help="Where to record; otherwise recordings/SCENE.rrd.")] = None,
     no_record: Annotated[bool, typer.Option("--no-record", help="Do not record to a file.")] = False,
     live: Annotated[bool, typer.Option("--live", help="Stream to a Rerun viewer while it runs.")] = False,
@@ -87,7 +91,7 @@ def run(
     if record is not None and record.suffix != ".rrd":
         raise SceneError(f"--record is '{record}'; a recording's name ends in .rrd")
     path = catalog.scene_path(scene)
-    read = _read(path, vehicle, duration, timestep, settings, geoms)
+    read = _read(path, vehicle, duration, timestep, settings, geoms, method)
     with _err.status("preparing (the first run after an installation compiles, which takes some seconds)"):
         simulation = Simulation(read)
     target = None if no_record else record or Path("recordings") / f"{path.stem}.rrd"
@@ -123,12 +127,17 @@ def list_() -> None:
 @app.command()
 @_told
 def view(
-    scene: _SCENE, vehicle: _VEHICLE = None, timestep: _TIMESTEP = None, settings: _SET = None, geoms: _GEOMS = None
+    scene: _SCENE,
+    vehicle: _VEHICLE = None,
+    timestep: _TIMESTEP = None,
+    method: _METHOD = None,
+    settings: _SET = None,
+    geoms: _GEOMS = None,
 ) -> None:
     """Open MuJoCo's interactive viewer with the water acting and drawn in it."""
     from buoyancy_mj.viewer import view as show  # needs GLFW and a display, which 'run' does not
 
-    show(Simulation(_read(catalog.scene_path(scene), vehicle, None, timestep, settings, geoms)))
+    show(Simulation(_read(catalog.scene_path(scene), vehicle, None, timestep, settings, geoms, method)))
 
 
 def _read(
@@ -138,9 +147,12 @@ def _read(
     timestep: float | None,
     settings: list[str] | None,
     geoms: list[str] | None,
+    method: str | None,
 ) -> Scene:
     """The scene with the flags laid over it."""
-    over = list(settings or [])
+    # first, so that settings may reach the method's options
+    over = [f"method={{kind={json.dumps(method, ensure_ascii=False)}}}"] if method is not None else []
+    over += settings or []
     if vehicle is not None:
         # relative to where the user stands, not to the scene
         own = vehicle if vehicle in catalog.models() else str(catalog.model_path(vehicle).resolve())

@@ -28,6 +28,10 @@ class DivergenceError(BuoyancyError):
     """A simulation that left the finite numbers."""
 
 
+class MethodError(BuoyancyError):
+    """A way to find what is under water that does not exist, or an option of it that makes no sense."""
+
+
 class RecordingError(BuoyancyError):
     """A recording that cannot be written to its end."""
 

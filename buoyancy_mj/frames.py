@@ -57,6 +57,8 @@ class Summary:
 
     scene: str
     """Title of the scene."""
+    method: str
+    """How the submersion was found."""
     mass: float
     """Of the vehicle [kg]."""
     displacement: float
@@ -85,6 +87,7 @@ class Summary:
         kind = "sinks" if self.net_weight > 0.0 else "floats"
         touched = f"{self.contact_steps} steps, first at {self.first_contact:.2f} s" if self.contact_steps else "none"
         return [
+            ("method", self.method),
             ("mass", f"{self.mass:.3f} kg"),
             ("displacement, fully under water", f"{self.displacement:.3f} kg"),
             ("net weight, fully under water", f"{self.net_weight:+.2f} N ({kind})"),

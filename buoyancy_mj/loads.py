@@ -37,9 +37,9 @@ class Loads:
     total: Portion
     """Everything; torque about the centre of mass of the floating bodies."""
     wetted_area: NDArray[np.float64]
-    """Area of each hull under water (h,) [m^2]."""
+    """Area of each hull under water (h,) [m^2]; NaN from a method that does not know it."""
     waterplane_area: NDArray[np.float64]
-    """Area of each hull's cut with the surface, seen from above (h,) [m^2]."""
+    """Area of each hull's cut with the surface, seen from above (h,) [m^2]; NaN likewise."""
     by_cause: Mapping[str, NDArray[np.float64]]
     """Force and torque rows (nbody, 6) [N, N m] of each cause, in the layout of MuJoCo's xfrc_applied."""
 

@@ -165,7 +165,8 @@ class Recording:
         lines = [
             wetted_surface(hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time)[1]
             for hull, waterplane in zip(self.simulation.buoyancy.hulls, frame.loads.waterplane_area, strict=True)
-            if waterplane > 0.0
+            # NaN from a method that does not know it
+            if waterplane != 0.0
         ]
         strips = np.concatenate([np.zeros((0, 2, 3)), *lines])
         self._log("world/waterline", rr.LineStrips3D(strips, colors=[WATERLINE], radii=[0.003 * self._size]))
@@ -173,16 +174,18 @@ class Recording:
     def _log_wetness(self, frame: Frame) -> None:
         """Colours of the vertices that moved through the surface since the last frame."""
         data, water = frame.data, self.simulation.scene.water
-        # of hulls it is known whether they are wholly wet or dry
-        buoyancy = self.simulation.buoyancy
-        parts = frame.loads.hull.volume / buoyancy.packed.volumes
-        wet_parts = dict(zip((hull.geom for hull in buoyancy.hulls), parts.tolist(), strict=True))
+        # hulls that the surface does not cut are wholly wet or dry
+        hulls, loads = self.simulation.buoyancy.hulls, frame.loads
+        uncut = {
+            hull.geom: bool(volume > 0.0)
+            for hull, volume, waterplane in zip(hulls, loads.hull.volume, loads.waterplane_area, strict=True)
+            if waterplane == 0.0
+        }
         for shape in self._drawn:
             if not shape.moves:
                 continue
-            part = wet_parts.get(shape.geom, 0.5)
-            if part in (0.0, 1.0):
-                wet = np.full(len(shape.vertices), part == 1.0)
+            if shape.geom in uncut:
+                wet = np.full(len(shape.vertices), uncut[shape.geom])
             else:
                 points = shape.vertices @ data.geom_xmat[shape.geom].reshape(3, 3).T + data.geom_xpos[shape.geom]
                 wet = water.depth(points, frame.time) > 0.0

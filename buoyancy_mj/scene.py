@@ -11,6 +11,8 @@ import mujoco
 
 from buoyancy_mj.drag import Drag
 from buoyancy_mj.errors import SceneError, choices
+from buoyancy_mj.exact import Exact
+from buoyancy_mj.methods import METHODS, Method
 from buoyancy_mj.tables import built
 from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
 
@@ -82,6 +84,8 @@ class Scene:
     """Pose and velocity at time 0."""
     drag: Drag | None = Drag()
     """How damping is estimated; None for none."""
+    method: Method = Exact()
+    """How the submersion is found."""
     text: str = ""
     """The scene as TOML text, for the record."""
     folder: Path = Path()
@@ -125,6 +129,7 @@ def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str =
         given["drag"] = Drag() if drag else None
     else:
         given["drag"] = built(Drag, _table(drag, f"{where}: drag"), f"{where}: drag")
+    given["method"] = _method(plain.pop("method", "exact"), f"{where}: method")
     # keys of the scene that are tables of their own are still its keys
     for key in plain:
         known = [field.name for field in dataclasses.fields(Scene) if field.name not in ("text", "folder")]
@@ -147,6 +152,15 @@ def _water(table: Mapping[str, Any], where: str) -> Water:
             raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
         waves.append(built(WAVES[kind], wave, place))
     return built(Water, plain, where, waves=tuple(waves))
+
+
+def _method(value: Any, where: str) -> Method:
+    """A method by its name, or a table of its `kind` and its options."""
+    plain = {"kind": value} if isinstance(value, str) else dict(_table(value, where))
+    kind = plain.pop("kind", None)
+    if not isinstance(kind, str) or kind not in METHODS:
+        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), METHODS)}")
+    return built(METHODS[kind], plain, where)
 
 
 def _table(value: Any, where: str) -> Mapping[str, Any]:

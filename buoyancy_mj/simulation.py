@@ -35,7 +35,7 @@ class Simulation:
         # a diverging simulation is told, not set back to the start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-        self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag)
+        self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag, method=scene.method)
         floating = self.buoyancy.floating
         self.vehicle = floating[floating < bodies]
         """Indices of the vehicle's bodies; what floats in the environment is none of them."""
@@ -119,6 +119,7 @@ class Simulation:
         late = [height for at, height in self._heights if at >= end - LAST - 1e-9]
         return Summary(
             scene=self.scene.title,
+            method=self.scene.method.name,
             mass=self.mass,
             displacement=self.displacement,
             net_weight=self.weight - self.displacement * self.buoyancy.gravity,

@@ -35,7 +35,7 @@ def built(cls: type[T], table: Mapping[str, Any], where: str, **given: Any) -> T
 
 
 def converted(value: Any, hint: Any, where: str) -> Any:
-    """`value` as `hint` wants it: bool, float, str, a tuple of floats or of strings, or one of those or None."""
+    """`value` as `hint` wants it: bool, int, float, str, a tuple of floats or of strings, or one of those or None."""
     if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
         options = [option for option in typing.get_args(hint) if option is not type(None)]
         return converted(value, options[0], where)
@@ -43,6 +43,10 @@ def converted(value: Any, hint: Any, where: str) -> Any:
         if math.isnan(value):
             raise SceneError(f"{where} is nan; needed is a number")
         return float(value)
+    if hint is bool and isinstance(value, bool):
+        return value
+    if hint is int and isinstance(value, int) and not isinstance(value, bool):
+        return value
     if hint is str and isinstance(value, str):
         return value
     if typing.get_origin(hint) is tuple and isinstance(value, list | tuple):
@@ -61,4 +65,6 @@ def _described(hint: Any) -> str:
     if typing.get_origin(hint) is tuple:
         items = typing.get_args(hint)
         return "a list of words" if items[-1] is Ellipsis else f"a list of {len(items)} numbers"
-    return {float: "a number", str: "a text in quotes"}.get(hint, f"a table ({getattr(hint, '__name__', hint)})")
+    return {float: "a number", int: "a whole number", bool: "true or false", str: "a text in quotes"}.get(
+        hint, f"a table ({getattr(hint, '__name__', hint)})"
+    )

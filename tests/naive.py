@@ -4,6 +4,7 @@ import numpy as np
 import trimesh
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from scipy.spatial import Delaunay, QhullError
 
 from buoyancy_mj import TriMesh, submerge
 
@@ -117,3 +118,25 @@ def cone(half_angle_radius, height, sections=512, apex_up=True):
 def trimesh_hull(solid):
     """A trimesh solid as a TriMesh."""
     return TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))
+
+
+def hull_volume(points):
+    """Volume of a convex hull as the sum of the tetrahedra of its Delaunay triangulation; flat sets have none."""
+    try:
+        cells = points[Delaunay(points).simplices]
+    except QhullError:
+        return 0.0
+    return np.abs(np.linalg.det(cells[:, 1:] - cells[:, :1])).sum() / 6.0
+
+
+def section(mesh, s):
+    """Area and centroid (u, v) of one cross-section perpendicular to z, by trimesh and shapely."""
+    solid = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    path = solid.section(plane_origin=[0.0, 0.0, s], plane_normal=[0.0, 0.0, 1.0])
+    if path is None:
+        return 0.0, np.full(2, np.nan)
+    planar, _ = path.to_2D(to_2D=trimesh.transformations.translation_matrix([0.0, 0.0, -s]))
+    polygons = planar.polygons_full
+    areas = np.array([polygon.area for polygon in polygons])
+    centroids = np.array([polygon.centroid.coords[0] for polygon in polygons])
+    return areas.sum(), areas @ centroids / areas.sum()

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, shapes, submerge, submersion
+from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, exact, shapes, submerge, submersion
 from buoyancy_mj.mesh import refined
 from tests import naive
 from tests.naive import trimesh_hull
@@ -258,11 +258,11 @@ def test_in_steep_waves_four_hulls_long_the_error_is_below_half_a_thousandth(nam
     mesh = shapes.box(flat[name]) if name in flat else ODD[name]
     wavelength = 8.0 * mesh.radius
     water = Water(waves=RegularWave(0.07 * wavelength, wavelength=wavelength))
-    packed = submersion.PackedHulls([mesh], [0], [0], water)
+    packed = exact.PackedHulls([mesh], [0], [0], water)
     # a mesh at least ten times finer
-    monkeypatch.setattr(submersion, "WAVE_TOLERANCE", submersion.WAVE_TOLERANCE / 150.0)
-    monkeypatch.setattr(submersion, "MOST_TRIANGLES", 10**9)
-    reference = submersion.PackedHulls([mesh], [0], [0], water)
+    monkeypatch.setattr(exact, "WAVE_TOLERANCE", exact.WAVE_TOLERANCE / 150.0)
+    monkeypatch.setattr(exact, "MOST_TRIANGLES", 10**9)
+    reference = exact.PackedHulls([mesh], [0], [0], water)
     assert len(reference._faces) > 10 * len(packed._faces)
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -303,19 +303,19 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
 def test_long_slender_hulls_stay_cheap_in_waves(length):
     water = Water(waves=RegularWave(0.3, frequency=0.5))
     cylinder = shapes.cylinder(0.1, length / 2.0)
-    edge = submersion.longest_edge(cylinder.volume, cylinder.area, water)
-    packed = submersion.PackedHulls([cylinder], [0], [0], water)
+    edge = exact.longest_edge(cylinder.volume, cylinder.area, water)
+    packed = exact.PackedHulls([cylinder], [0], [0], water)
     # a few triangles for every edge length of each of the 64 facets
     assert len(packed._faces) < 64 * 6 * (length / edge + 2.0)
-    beam = submersion.PackedHulls([shapes.box((50.0, 0.01, 0.01))], [0], [0], water)
-    assert len(beam._faces) < submersion.MOST_TRIANGLES
+    beam = exact.PackedHulls([shapes.box((50.0, 0.01, 0.01))], [0], [0], water)
+    assert len(beam._faces) < exact.MOST_TRIANGLES
 
 
 # borders --------------------------------------------------------------------------------------------
 
 
 def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
-    packed = submersion.PackedHulls([TORUS], [0], [0], Water())
+    packed = exact.PackedHulls([TORUS], [0], [0], Water())
     row = packed.submerge(np.array([[0.0, 0.0, np.nan]]), np.eye(3).reshape(1, 9), 0.0)[0]
     assert np.isnan(row).all()
 

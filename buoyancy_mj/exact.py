@@ -1,0 +1,119 @@
+"""`Exact`: the submersion of the meshes themselves, cut where the surface cuts them."""
+
+import dataclasses
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from buoyancy_mj.kernels import clip
+from buoyancy_mj.mesh import TriMesh, refined
+from buoyancy_mj.water import Water
+
+WAVE_TOLERANCE = 2e-3
+"""Bound, as a fraction of the hull's volume, on what flat triangles miss of a wave's curve.
+
+Upper and lower sides miss alike and cancel in part: the tests find a quarter of it at most."""
+MOST_TRIANGLES = 200_000
+"""Size to which a mesh may be refined for that."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Exact:
+    """The volume and centroid of what is under the surface, exact on the mesh: the default everywhere."""
+
+    name: ClassVar[str] = "exact"
+
+    def packed(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> "PackedHulls":
+        """Hulls ready to be submerged, see `PackedHulls`."""
+        return PackedHulls(meshes, frames, bodies, water)
+
+
+class PackedHulls:
+    """Hulls in one set of arrays, ready to be submerged together without allocating.
+
+    On still water the results are exact on the mesh. In waves the depth is linear on each triangle
+    of a mesh fine enough for that, see `longest_edge`.
+    """
+
+    def __init__(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> None:
+        """Pack `meshes`.
+
+        Args:
+            meshes: the hulls (h).
+            frames: which row of positions and rotations places each (h,).
+            bodies: hulls of one number (h,) move together; errors in waves are seen against their joint volume.
+            water: the sea.
+        """
+        self.water = water
+        self.frames = np.asarray(frames, np.int64)
+        self._whole = np.array([[m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents)] for m in meshes])
+        self.volumes = self._whole[:, 0].copy()
+        """Whole volumes (h,) [m^3]."""
+        edges = _longest_edges(meshes, np.asarray(bodies), water)
+        fine = [refined(mesh.vertices, mesh.faces, edge) for mesh, edge in zip(meshes, edges, strict=True)]
+        self._vertices = np.concatenate([vertices for vertices, _ in fine])
+        self._vertex_starts = np.cumsum([0, *(len(vertices) for vertices, _ in fine)])
+        # unsigned, since Numba asks of a signed index whether it counts from the end
+        self._faces = np.concatenate(
+            [faces + start for (_, faces), start in zip(fine, self._vertex_starts[:-1], strict=True)]
+        ).astype(np.uint32)
+        self._face_starts = np.cumsum([0, *(len(faces) for _, faces in fine)])
+        a, b, c = self._vertices[self._faces.T]
+        self._face_areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        self._waves = water.rows
+        self._points = np.empty((len(self._vertices), 4))
+        self.results = np.zeros((len(meshes), clip.COLUMNS))
+        """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """Work done so far: not counted here."""
+        return {}
+
+    def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        """Submersion of all hulls at a time [s], written to and returned as `results`.
+
+        Args:
+            positions: origins of the frames (n, 3) [m], world frame.
+            rotations: world_from_frame of the frames, row-major (n, 9).
+            time: [s].
+        """
+        clip.submerge_hulls(
+            self._vertices,
+            self._vertex_starts,
+            self._faces,
+            self._face_starts,
+            self._face_areas,
+            self._whole,
+            self.frames,
+            positions,
+            rotations,
+            self.water.level,
+            self._waves,
+            time,
+            self._points,
+            self.results,
+        )
+        return self.results
+
+
+def longest_edge(volume: float, area: float, water: Water) -> float:
+    """Longest edge [m] with which triangles follow the waves well enough for hulls of a volume and an area.
+
+    A chord of length e under a curve of curvature c is off by c e^2 / 12 on average. A quarter of
+    the surface faces up and a quarter down (Cauchy's mean projected area), so the volume is off by
+    less than c e^2 / 12 times half the surface, and that must stay below `WAVE_TOLERANCE` of it.
+    No hull is driven beyond about `MOST_TRIANGLES`.
+    """
+    if water.curvature == 0.0:
+        return np.inf
+    fine = np.sqrt(24.0 * WAVE_TOLERANCE * volume / (area * water.curvature))
+    return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
+
+
+def _longest_edges(meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water) -> list[float]:
+    """`longest_edge` of each mesh, from the volume and the area of all meshes of its body."""
+    volumes, areas = np.array([mesh.volume for mesh in meshes]), np.array([mesh.area for mesh in meshes])
+    return [longest_edge(volumes[bodies == body].sum(), areas[bodies == body].sum(), water) for body in bodies]

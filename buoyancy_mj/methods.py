@@ -1,0 +1,79 @@
+"""The ways to find what is under water, by name: the exact one, and the two of the source paper."""
+
+from collections.abc import Mapping, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from buoyancy_mj.convex_hull import ConvexHull
+from buoyancy_mj.errors import MethodError, choices
+from buoyancy_mj.exact import Exact
+from buoyancy_mj.mesh import TriMesh
+from buoyancy_mj.sections import Sections
+from buoyancy_mj.water import Water
+
+
+class Packed(Protocol):
+    """Hulls ready to be submerged together, again and again."""
+
+    results: NDArray[np.float64]
+    """Last submersion (h, 6): volume, centroid (NaN when dry), wetted area, waterplane area (NaN if the method has none)."""
+    volumes: NDArray[np.float64]
+    """Whole volumes of the meshes (h,) [m^3]."""
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """Work done so far, in the method's own units."""
+        ...
+
+    def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        """Submersion of all hulls at a time [s], written to and returned as `results`.
+
+        Args:
+            positions: origins of the frames (n, 3) [m], world frame.
+            rotations: world_from_frame of the frames, row-major (n, 9).
+            time: [s].
+        """
+        ...
+
+
+class Method(Protocol):
+    """A way to find what is under water, and its options."""
+
+    @property
+    def name(self) -> str:
+        """What it is called in scenes and on the command line."""
+        ...
+
+    def packed(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> Packed:
+        """Hulls ready to be submerged.
+
+        Args:
+            meshes: the hulls (h).
+            frames: which row of positions and rotations places each (h,).
+            bodies: hulls of one number (h,) move together.
+            water: the sea.
+        """
+        ...
+
+
+METHODS: Mapping[str, type[Exact] | type[ConvexHull] | type[Sections]] = {
+    method.name: method for method in (Exact, ConvexHull, Sections)
+}
+"""The methods by name."""
+
+
+def method_of(method: str | Method) -> Method:
+    """A method as it is, or the one of a name with its defaults.
+
+    Raises:
+        MethodError: there is no such method.
+    """
+    if isinstance(method, str):
+        if method not in METHODS:
+            raise MethodError(f"unknown method '{method}'; {choices(method, METHODS)}")
+        return METHODS[method]()
+    if not hasattr(method, "packed"):
+        raise MethodError(f"{method!r} is no method; possible are {', '.join(METHODS)}, or one of them with options")
+    return method

@@ -1,0 +1,197 @@
+"""`Sections`: the source paper's cheaper method, cross-sections integrated along an axis.
+
+After Mahbub and Shaharear (2025). The areas are those of true sections of the mesh, hollows
+included. What it costs in truth: steps between sections; the surface is a plane perpendicular to
+the axis, so an axis fixed in a body that heels cuts it wrongly.
+"""
+
+import dataclasses
+import math
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import integrate
+
+from buoyancy_mj.errors import MethodError, choices
+from buoyancy_mj.kernels import clip, slices
+from buoyancy_mj.mesh import TriMesh
+from buoyancy_mj.water import Water
+
+RULES = ("trapezoid", "simpson")
+"""Rules of integration."""
+STEPS = 100
+"""Sections across the longest side of a hull's bounding box where no step is given."""
+MOST_SECTIONS = 100_000
+"""More than these across one hull are refused."""
+_BELOW_TOP = 1e-9  # the topmost section lies just under a flat top, as a fraction of the height
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Sections:
+    """Areas of cross-sections at a fixed step, integrated along an axis up to the surface.
+
+    Raises:
+        MethodError: a step that is not positive, an axis without direction, an unknown rule.
+    """
+
+    name: ClassVar[str] = "sections"
+    step: float | None = None
+    """Distance between sections [m]; None for a 100th of the longest side of each hull's bounding box."""
+    axis: tuple[float, float, float] | None = None
+    """Direction (3,) of the axis in the frame of each geom; None for one that stays vertical.
+
+    Along a vertical axis the sections are cut anew at each step, since a body that turns has others.
+    Along an axis of the geom they are tabulated once, and the surface is taken where it meets the
+    axis through the middle of the hull: right upright, wrong by what the heel does to the waterline."""
+    rule: str = "trapezoid"
+    """Of integration: "trapezoid" or "simpson"."""
+
+    def __post_init__(self) -> None:
+        if self.rule not in RULES:
+            raise MethodError(f"rule is {self.rule!r}; {choices(str(self.rule), RULES)}")
+        if self.step is not None and (isinstance(self.step, bool) or not 0.0 < self.step < math.inf):
+            raise MethodError(f"step is {self.step!r}; it must be a positive length [m]")
+        if self.axis is not None:
+            axis = np.asarray(self.axis, float)
+            if axis.shape != (3,) or not np.isfinite(axis).all() or not axis.any():
+                raise MethodError(f"axis is {self.axis!r}; it must be three finite numbers, not all zero")
+            object.__setattr__(self, "axis", tuple(axis.tolist()))
+
+    def packed(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> "PackedSections":
+        """Hulls ready to be submerged, see `PackedSections`."""
+        return PackedSections(self, meshes, frames, water)
+
+
+class PackedSections:
+    """Hulls whose submersion is integrated from cross-sections; in waves the surface is level at its height over each."""
+
+    def __init__(self, method: Sections, meshes: Sequence[TriMesh], frames: ArrayLike, water: Water) -> None:
+        """Pack `meshes`, see `methods.Packed`.
+
+        Raises:
+            MethodError: a step so small that a mesh has more than `MOST_SECTIONS` sections.
+        """
+        self.method = method
+        self.water = water
+        self.frames = np.asarray(frames, np.int64)
+        self.volumes = np.array([mesh.volume for mesh in meshes])
+        """True volumes of the meshes (h,) [m^3]."""
+        self.results = np.zeros((len(meshes), clip.COLUMNS))
+        """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
+        self._meshes = list(meshes)
+        self._middles = [mesh.bounds.mean(axis=0) for mesh in meshes]
+        self._steps = [method.step or float(mesh.extents.max()) / STEPS for mesh in meshes]
+        for mesh, step in zip(meshes, self._steps, strict=True):
+            if np.linalg.norm(mesh.extents) / step > MOST_SECTIONS:
+                raise MethodError(
+                    f"step is {step:g} m on a mesh {mesh.extents.max():.3g} m long; "
+                    f"it must leave at most {MOST_SECTIONS} sections"
+                )
+        self._counts = dict.fromkeys(("steps", "sections", "tabulated", "look_ups"), 0)
+        self._tables = None if method.axis is None else [self._table(h) for h in range(len(meshes))]
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """Work done so far.
+
+        `steps` is calls, `sections` how many cross-sections were cut in them, `tabulated` how many
+        were cut before, and `look_ups` how often the tables of these were read.
+        """
+        return dict(self._counts)
+
+    def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
+        for h, frame in enumerate(self.frames):
+            origin, turn = positions[frame], rotations[frame].reshape(3, 3)
+            x, y, z = origin + turn @ self._middles[h]
+            depth = float(self.water.elevation(x, y, time)) - z
+            moments = self._upright(h, turn, depth) if self._tables is None else self._along(h, turn, depth)
+            volume = moments[0] if moments[0] > 0.0 else 0.0
+            centroid = moments[1:] / volume + origin if volume else np.full(3, np.nan)
+            self.results[h] = volume, *centroid, np.nan, np.nan
+        self._counts["steps"] += 1
+        return self.results
+
+    def _upright(self, h: int, turn: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
+        """Volume and first moments (4,) about the origin of the frame, from sections parallel to the still surface."""
+        mesh = self._meshes[h]
+        points = mesh.vertices @ turn.T
+        s, rows = sections(points, mesh.faces, self._steps[h], depth + float(turn[2] @ self._middles[h]))
+        self._counts["sections"] += len(s)
+        return integrated(rows, s, self.method.rule)[-1]
+
+    def _along(self, h: int, turn: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
+        """The same from the table along the hull's own axis, up or down to where the surface meets it."""
+        assert self._tables is not None
+        axes, s, rows, below = self._tables[h]
+        self._counts["look_ups"] += 1
+        upward = float(turn[2] @ axes[2])
+        # of an axis that lies level all is wet or nothing
+        above = depth / upward if upward else math.copysign(math.inf, depth)
+        at = float(np.clip(axes[2] @ self._middles[h] + above, s[0], s[-1]))
+        i = int(np.clip(np.searchsorted(s, at, side="right") - 1, 0, len(s) - 2))
+        part = (at - s[i]) / (s[i + 1] - s[i])
+        row = rows[i] + part * (rows[i + 1] - rows[i])
+        under = below[i] + 0.5 * (at - s[i]) * (rows[i] + row)
+        if upward < 0.0:
+            under = below[-1] - under
+        return np.array([under[0], *(turn @ axes.T @ under[1:])])
+
+    def _table(self, h: int) -> tuple[NDArray[np.float64], ...]:
+        """Axes (3, 3), heights (n,), section rows (n, 4) and their integrals up to each height (n, 4)."""
+        axes = _axes(self.method.axis)
+        mesh = self._meshes[h]
+        s, rows = sections(mesh.vertices @ axes.T, mesh.faces, self._steps[h], math.inf)
+        self._counts["tabulated"] += len(s)
+        return axes, s, rows, integrated(rows, s, self.method.rule)
+
+
+def sections(
+    points: NDArray[np.float64], faces: NDArray[np.int64], step: float, top: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Cross-sections of a closed mesh perpendicular to its third coordinate, from its lowest point up to `top`.
+
+    Args:
+        points: vertices (v, 3) [m], along right-handed axes u, v, s.
+        faces: of the mesh (f, 3).
+        step: between sections [m]; the last, at `top` or the highest point, comes sooner.
+        top: highest s [m] of interest.
+
+    Returns:
+        Heights (n,) [m] of the sections and rows (n, 4): area A [m^2] and its moments
+        int u dA, int v dA, s A [m^3]. Nothing (0,) where the mesh lies above `top`.
+    """
+    low, high = points[:, 2].min(), points[:, 2].max()
+    end = min(top, high - _BELOW_TOP * (high - low))
+    if not end > low:
+        return np.zeros(0), np.zeros((0, 4))
+    s = np.append(low + step * np.arange(max(1, math.ceil((end - low) / step - 1e-9))), end)
+    out = np.empty((len(s), 3))
+    slices.sections(points, faces, s, out)
+    return s, np.column_stack([out, out[:, 0] * s])
+
+
+def integrated(rows: NDArray[np.float64], s: NDArray[np.float64], rule: str) -> NDArray[np.float64]:
+    """Integrals (n, k) of rows (n, k) over s (n,), from its first value up to each; at least one row, of zeros.
+
+    The last interval is shorter than the others, and always a trapezoid: a parabola through three
+    points, two of them close together and an area's jump between them, could lead anywhere.
+    """
+    if len(s) < 2:
+        return np.zeros((1, rows.shape[1]))
+    out = integrate.cumulative_trapezoid(rows, s, axis=0, initial=0.0)
+    if rule == "simpson" and len(s) > 3:
+        out[-1] -= out[-2]
+        out[:-1] = integrate.cumulative_simpson(rows[:-1], dx=s[1] - s[0], axis=0, initial=0.0)
+        out[-1] += out[-2]
+    return out
+
+
+def _axes(axis: tuple[float, float, float] | None) -> NDArray[np.float64]:
+    """Right-handed axes (3, 3), as rows, of which the third is `axis`."""
+    third = np.asarray(axis) / np.linalg.norm(np.asarray(axis))
+    first = np.cross(np.eye(3)[np.argmin(np.abs(third))], third)
+    first /= np.linalg.norm(first)
+    return np.stack([first, np.cross(third, first), third])
