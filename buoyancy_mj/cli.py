@@ -1,6 +1,7 @@
 """The command line: flags to a scene, then for each frame: record. No physics."""
 
 import dataclasses
+import itertools
 import json
 import math
 import signal
@@ -15,12 +16,13 @@ from typing import Annotated, Any
 import mujoco
 import typer
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.table import Table
 
 from buoyancy_mj import catalog
 from buoyancy_mj.errors import BuoyancyError, SceneError
 from buoyancy_mj.frames import Summary
+from buoyancy_mj.paper.study import Study
 from buoyancy_mj.scene import Scene, read_scene
 from buoyancy_mj.simulation import Simulation
 
@@ -138,6 +140,35 @@ def view(
     from buoyancy_mj.viewer import view as show  # needs GLFW and a display, which 'run' does not
 
     show(Simulation(_read(catalog.scene_path(scene), vehicle, None, timestep, settings, geoms, method)))
+
+
+@app.command()
+@_told
+def paper(
+    only: Annotated[list[str] | None, typer.Option(help="Only these studies; a wrong name lists them.")] = None,
+    out: Annotated[Path, typer.Option(help="Where tables and pictures go.")] = Path("docs/paper"),
+    quick: Annotated[bool, typer.Option("--quick", help="Coarse and short, to see that it runs.")] = False,
+) -> None:
+    """Reproduce the source paper: its figures, and what holds of its claims."""
+    from buoyancy_mj.paper import report, studies  # need matplotlib, which 'run' does not
+
+    total = len(set(only)) if only else len(studies.STUDIES)
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=_err, transient=True, disable=not _err.is_terminal) as progress:
+        task = progress.add_task("", total=total)
+
+        def begin(study: Study) -> None:
+            progress.update(task, description=study.title, completed=next(done))
+
+        done = itertools.count()
+        rows = report.reproduce(out, only or (), quick=quick, begin=begin)
+    table = Table(title="The source paper's claims", title_justify="left", show_lines=True)
+    for name in report.HEADER:
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(*row)
+    _out.print(table)
+    _out.print(f"tables and pictures: {_quoted(out)}", highlight=False, soft_wrap=True)
 
 
 def _read(

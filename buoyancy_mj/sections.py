@@ -25,7 +25,7 @@ STEPS = 100
 """Sections across the longest side of a hull's bounding box where no step is given."""
 MOST_SECTIONS = 100_000
 """More than these across one hull are refused."""
-_BELOW_TOP = 1e-9  # the topmost section lies just under a flat top, as a fraction of the height
+_INSIDE = 1e-6  # sections at the ends lie this fraction of the height inside them: flat ends count, though rounded
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -164,12 +164,12 @@ def sections(
         int u dA, int v dA, s A [m^3]. Nothing (0,) where the mesh lies above `top`.
     """
     low, high = points[:, 2].min(), points[:, 2].max()
-    end = min(top, high - _BELOW_TOP * (high - low))
+    end, inside = min(top, high), _INSIDE * (high - low)
     if not end > low:
         return np.zeros(0), np.zeros((0, 4))
     s = np.append(low + step * np.arange(max(1, math.ceil((end - low) / step - 1e-9))), end)
     out = np.empty((len(s), 3))
-    slices.sections(points, faces, s, out)
+    slices.sections(points, faces, np.clip(s, low + inside, high - inside), out)
     return s, np.column_stack([out, out[:, 0] * s])
 
 

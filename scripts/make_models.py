@@ -10,12 +10,10 @@ import trimesh
 from trimesh import Trimesh
 from trimesh.creation import box, cylinder, revolve
 
+from buoyancy_mj.paper import solids
+
 MODELS = Path(__file__).resolve().parent.parent / "models"
 UPRIGHT_TO_X = trimesh.transformations.rotation_matrix(np.pi / 2.0, [0.0, 1.0, 0.0])
-
-# hourglass: two frusta of cones, neck to neck
-BASE_RADIUS, NECK_RADIUS, HALF_HEIGHT = 0.15, 0.04, 0.20
-RINGS, SECTIONS = 24, 96
 
 # AUV, every part about its own middle, see models/sauvc_auv/README.md
 HULL_RADIUS, HULL_CYLINDER, HULL_DOME = 0.090, 0.450, 0.075
@@ -29,11 +27,9 @@ MOTOR_RADIUS, MOTOR_LENGTH, STRUT = 0.020, 0.080, 0.006
 
 
 def hourglass() -> Trimesh:
-    """A solid of revolution with a neck, z up, its middle at the origin."""
-    z = np.linspace(-HALF_HEIGHT, HALF_HEIGHT, 2 * RINGS + 1)
-    radius = NECK_RADIUS + (BASE_RADIUS - NECK_RADIUS) * np.abs(z) / HALF_HEIGHT
-    profile = np.column_stack([np.r_[0.0, radius, 0.0], np.r_[z[0], z, z[-1]]])
-    return revolve(profile, sections=SECTIONS)
+    """The hourglass that the reproduction of the source paper measures, z up, its middle at the origin."""
+    mesh = solids.hourglass()
+    return Trimesh(mesh.vertices, mesh.faces, process=False)
 
 
 def capped_tube(radius: float, length: float, dome: float) -> Trimesh:

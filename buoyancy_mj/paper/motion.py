@@ -1,0 +1,295 @@
+"""Studies of bodies that move: forces and the centre of gravity over time."""
+
+import dataclasses
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from buoyancy_mj import catalog
+from buoyancy_mj.assembly import assembled
+from buoyancy_mj.buoyancy import Buoyancy
+from buoyancy_mj.drag import Drag
+from buoyancy_mj.loads import Loads
+from buoyancy_mj.methods import Method
+from buoyancy_mj.paper import solids
+from buoyancy_mj.paper.statics import DENSITY, METHODS
+from buoyancy_mj.paper.study import Claim, Result, listed, table_of, verdict
+from buoyancy_mj.scene import Scene, Start, read_scene
+from buoyancy_mj.water import LevelOscillation, RegularWave, Water
+
+AMPLITUDE, FREQUENCY = 0.3, 0.5
+"""The paper's surface: +-0.3 m at 0.5 Hz."""
+SURFACES = {
+    "still": Water(density=DENSITY),
+    # both begin at the mean level, going up
+    "moving level": Water(density=DENSITY, waves=LevelOscillation(AMPLITUDE, FREQUENCY, phase=np.pi / 2.0)),
+    "travelling wave": Water(density=DENSITY, waves=RegularWave(AMPLITUDE, frequency=FREQUENCY, phase=np.pi / 2.0)),
+}
+SWING = 0.05
+"""What the paper allows the centre of gravity on waves [m]."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Moment:
+    """One step of a run."""
+
+    time: float
+    """[s]."""
+    height: float
+    """z of the centre of gravity [m]."""
+    draft: float
+    """Depth of the lowest point under the still level, less what the level moved [m]."""
+    force: float
+    """Buoyancy [N]."""
+
+
+def force(quick: bool) -> Result:
+    """Buoyancy against submersion: slowly lowered, and in a drop, which must follow the same curve."""
+    mesh = solids.hourglass()
+    dz = np.linspace(0.0, 2.0 * solids.HALF_HEIGHT, 21 if quick else 81)
+    scene = dataclasses.replace(_scene("hourglass_drop_still"), start=Start(position=(0.0, 0.0, 0.35)))
+    weight = DENSITY * 9.81
+    slow = {"dz [m]": dz, "rho g V, closed form [N]": weight * solids.hourglass_volume(dz, solids.SECTIONS)}
+    drop: dict[str, NDArray[np.float64]] = {}
+    worst = {}
+    for name in ("exact", "convex hull", "sections"):
+        method = METHODS[name]
+        places = [np.array([0.0, 0.0, solids.HALF_HEIGHT - t]) for t in dz]
+        slow[f"{name} [N]"] = weight * np.array([solids.wet_volume([mesh], p, np.eye(3), method) for p in places])
+        moments = list(run(scene, method))
+        found = np.array([m.force for m in moments])
+        depths = np.array([m.draft for m in moments])
+        drop |= {f"{name}, dz [m]": depths, f"{name}, force [N]": found}
+        if name == "exact":
+            drop = {"time [s]": np.array([m.time for m in moments])} | drop
+        at_rest = np.array(
+            [solids.wet_volume([mesh], np.array([0.0, 0.0, solids.HALF_HEIGHT - d]), np.eye(3), method) for d in depths]
+        )
+        worst[name] = float(np.abs(found - weight * at_rest).max())
+    return Result(
+        {"force": slow, "force_in_a_drop": drop},
+        (
+            Claim(
+                "the force adapts within 16 ms",
+                "16 ms",
+                "at once: at every step of a drop the force is that of the pose of this step, to within "
+                + listed({name: f"{value:.1g} N" for name, value in worst.items()}),
+                verdict(all(value < 1e-3 for value in worst.values())),
+            ),
+        ),
+    )
+
+
+def distributed(quick: bool) -> Result:
+    """Buoyancy of each mesh of the AUV at rest, and whether the meshes' forces act like their resultant."""
+    scene = _scene("auv_drop_still")
+    scene = dataclasses.replace(scene, start=Start(position=(0.0, 0.0, -0.12)), duration=1.0 if quick else 20.0)
+    model, data, _ = assembled(scene)
+    buoyancy = Buoyancy(model, scene.water)
+    with buoyancy.installed():
+        mujoco.mj_step(model, data, round(scene.duration / scene.timestep))
+    mujoco.mj_forward(model, data)
+    loads = buoyancy.evaluate(data)
+    rows = [*zip(loads.names, loads.hull.volume, loads.hull.centroid, loads.hull.force[:, 2], strict=True)]
+    rows.append(("all", float(loads.total.volume), loads.total.centroid, float(loads.hull.force[:, 2].sum())))
+    # the same on waves, at each step of a run: what the joints feel
+    apart = strongest = 0.0
+    waves = dataclasses.replace(_scene("auv_waves"), duration=0.5 if quick else 5.0)
+    for name in ("exact", "convex hull", "sections"):
+        for _, wet in _steps(waves, METHODS[name]):
+            (each, one), scale = _joint_forces(*wet)
+            apart, strongest = max(apart, float(np.abs(each - one).max())), max(strongest, scale)
+    names = ["mesh", "volume [m^3]", "x [m]", "y [m]", "z [m]", "force [N]"]
+    table = table_of(names, [(name, float(v), *map(float, centroid), float(f)) for name, v, centroid, f in rows])
+    return Result(
+        {"distributed": table},
+        (
+            Claim(
+                "forces of several meshes, or their resultant at the volume-weighted centroid",
+                "act alike",
+                f"over {waves.duration:g} s of the AUV on waves, by all three methods, the joint's forces differ by "
+                f"{apart:.1g} of up to {strongest:.0f} N and N m",
+                verdict(apart < 1e-9 * strongest),
+            ),
+        ),
+    )
+
+
+def cog(quick: bool) -> Result:
+    """The centre of gravity's z over 5 s at 0.01 s, on still water and on both kinds of waves."""
+    tables: dict[str, dict[str, NDArray[np.float64]]] = {}
+    swings: dict[tuple[str, str], float] = {}
+    for vehicle, name in (("hourglass", "hourglass_drop_waves"), ("AUV", "auv_waves")):
+        columns: dict[str, NDArray[np.float64]] = {}
+        for surface, water in SURFACES.items():
+            scene = dataclasses.replace(_scene(name), water=water, duration=1.0 if quick else 5.0)
+            for method in ("exact", "convex hull", "sections"):
+                moments = list(run(scene, METHODS[method]))
+                columns.setdefault("time [s]", np.array([m.time for m in moments]))
+                heights = np.array([m.height for m in moments])
+                columns[f"{surface}, {method} [m]"] = heights
+                if method == "exact":
+                    swings[vehicle, surface] = _swing(heights, scene.timestep)
+        tables[f"cog_{vehicle.lower()}"] = columns
+    told = ", ".join(f"{swings[v, s]:.2f} m ({v}, {s})" for v in ("hourglass", "AUV") for s in SURFACES if s != "still")
+    return Result(
+        tables,
+        (
+            Claim(
+                "the centre of gravity oscillates within 0.05 m on the waves, as our scenes have them",
+                "within 0.05 m",
+                f"half the range of its z over the last wave of 5 s: {told}",
+                verdict(max(s for (_, name), s in swings.items() if name != "still") < SWING),
+            ),
+        ),
+    )
+
+
+def oscillation(quick: bool) -> Result:
+    """Which mass, damping and kind of wave keep the hourglass's centre of gravity within 0.05 m."""
+    whole = DENSITY * solids.hourglass().volume
+    fractions = (0.4, 0.73) if quick else (0.2, 0.4, 0.5, 0.6, 0.73, 0.9, 0.99)
+    rates = (0.0, 30.0) if quick else (0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
+    rows = []
+    for surface in ("moving level", "travelling wave"):
+        for drag in (Drag(), None):
+            for fraction in fractions:
+                for rate in rates:
+                    scene = dataclasses.replace(
+                        _scene("hourglass_drop_waves"),
+                        water=SURFACES[surface],
+                        drag=drag,
+                        # the base touches the water
+                        start=Start(position=(0.0, 0.0, solids.HALF_HEIGHT)),
+                    )
+                    moments = list(run(scene, METHODS["exact"], mass=fraction * whole, rate=rate))
+                    swing = _swing(np.array([m.height for m in moments]), scene.timestep)
+                    last = moments[-round(1.0 / FREQUENCY / scene.timestep) :]
+                    rows.append(
+                        (surface, "estimated" if drag else "none", fraction, rate, swing, max(m.force for m in last))
+                    )
+    names = ["surface", "drag of the water", "mass over displacement", "damping [1/s]", "swing [m]", "largest force [N]"]
+    # in the water during the last wave, not flung out of it
+    within = [row for row in rows if row[4] < SWING and row[5] > 0.0]
+    least = listed({f"mass {part:g}": f"{_least(within, part):g} /s" for part in fractions})
+    free = [row[4] for row in rows if row[3] == 0.0]
+    return Result(
+        {"oscillation": table_of(names, rows)},
+        (
+            Claim(
+                "the centre of gravity oscillates within 0.05 m on the waves, for some mass, damping and wave",
+                "within 0.05 m",
+                f"{len(within)} of {len(rows)} combinations do, with a damping against the world, as physics engines "
+                f"offer and water does not, of at least {least} of the displacement; without it the swing is {min(free):.2f} to "
+                f"{max(free):.2f} m whatever the mass, wave and drag of the water",
+                verdict(len(within) == len(rows), bool(within)),
+            ),
+        ),
+    )
+
+
+def rest(quick: bool) -> Result:
+    """The force once a drop on still water has come to rest."""
+    duration = 5.0 if quick else 60.0
+    tables = {}
+    spread: dict[str, float] = {}
+    early: dict[str, float] = {}
+    for vehicle, name in (("hourglass", "hourglass_drop_still"), ("AUV", "auv_drop_still")):
+        scene = dataclasses.replace(_scene(name), duration=duration)
+        columns: dict[str, NDArray[np.float64]] = {}
+        for method in ("exact", "convex hull", "sections"):
+            # the AUV's hulls would take a minute and say the same
+            if vehicle == "AUV" and method == "convex hull" and not quick:
+                scene = dataclasses.replace(scene, duration=20.0)
+            moments = list(run(scene, METHODS[method]))
+            forces = np.array([m.force for m in moments])
+            columns[f"{method} [N]"] = forces[-200:]
+            columns["time before the end [s]"] = scene.timestep * np.arange(-199.0, 1.0)
+            spread[f"{vehicle}, {method}, {scene.duration:g} s"] = float(forces[-200:].std())
+            early[f"{vehicle}, {method}"] = float(forces[round(3.0 / scene.timestep) : round(5.0 / scene.timestep)].std())
+        tables[f"rest_{vehicle.lower()}"] = columns
+    return Result(
+        tables,
+        (
+            Claim(
+                "standard deviation of the force at rest",
+                "below 0.5 N",
+                "over the last 2 s: "
+                + listed({name: f"{value:.2g} N" for name, value in spread.items()})
+                + "; over 3 to 5 s, still bobbing: "
+                + listed({name: f"{value:.2g} N" for name, value in early.items()}),
+                verdict(max(spread.values()) < 0.5 and max(early.values()) < 0.5, max(spread.values()) < 0.5),
+            ),
+        ),
+    )
+
+
+def _least(rows: list[tuple[str, str, float, float, float, float]], part: float) -> float:
+    """Least damping [1/s] with which a mass stays within the swing on either surface, with or without the water's drag."""
+    return min((rate for _, _, fraction, rate, *_ in rows if fraction == part), default=np.inf)
+
+
+def run(scene: Scene, method: Method, mass: float | None = None, rate: float = 0.0) -> Iterator[Moment]:
+    """Steps of a scene by a method.
+
+    Args:
+        scene: what runs.
+        method: how the submersion is found.
+        mass: of the vehicle [kg], its inertia scaled along; None for its own.
+        rate: damping [1/s] of all velocities of its root relative to the world, per mass and inertia, as
+            physics engines have it ("linear damping").
+    """
+    for (data, buoyancy), (_, _, loads) in _steps(scene, method, mass, rate):
+        centre = buoyancy.centre_of_mass(data)
+        level = float(scene.water.elevation(centre[0], centre[1], data.time))
+        lowest = min(
+            float((h.mesh.vertices @ data.geom_xmat[h.geom][6:] + data.geom_xpos[h.geom][2]).min()) for h in buoyancy.hulls
+        )
+        yield Moment(float(data.time), float(centre[2]), level - lowest, float(loads.hull.force[:, 2].sum()))
+
+
+def _steps(
+    scene: Scene, method: Method, mass: float | None = None, rate: float = 0.0
+) -> Iterator[tuple[tuple[mujoco.MjData, Buoyancy], tuple[mujoco.MjModel, mujoco.MjData, Loads]]]:
+    """Each step of a scene: the data at its beginning, and the loads then."""
+    model, data, _ = assembled(scene)
+    if mass is not None:
+        factor = mass / model.body_mass.sum()
+        model.body_mass *= factor
+        model.body_inertia *= factor
+        mujoco.mj_setConst(model, mujoco.MjData(model))
+    # mass and inertia about the joint's axes
+    model.dof_damping[:] = rate * model.dof_M0
+    buoyancy = Buoyancy(model, scene.water, drag=scene.drag, method=method)
+    with buoyancy.installed():
+        for _ in range(round(scene.duration / scene.timestep)):
+            mujoco.mj_kinematics(model, data)
+            mujoco.mj_comPos(model, data)
+            yield (data, buoyancy), (model, data, buoyancy.evaluate(data))
+            mujoco.mj_step(model, data)
+
+
+def _joint_forces(model: mujoco.MjModel, data: mujoco.MjData, loads: Loads) -> tuple[NDArray[np.float64], float]:
+    """What a free body's joint feels (2, nv) of the meshes' forces one by one and of their resultant; and the largest."""
+    each, one = out = np.zeros((2, model.nv))
+    nothing = np.zeros(3)
+    for centroid, force in zip(loads.hull.centroid, loads.hull.force, strict=True):
+        if force[2] > 0.0:
+            mujoco.mj_applyFT(model, data, force, nothing, centroid, 1, each)
+    if loads.total.volume > 0.0:
+        wet = loads.hull.volume > 0.0
+        centre = loads.hull.volume[wet] @ loads.hull.centroid[wet] / loads.hull.volume[wet].sum()
+        mujoco.mj_applyFT(model, data, loads.hull.force.sum(axis=0), nothing, centre, 1, one)
+    return out, float(np.abs(each).max())
+
+
+def _swing(heights: NDArray[np.float64], timestep: float) -> float:
+    """Half the range of heights over the last period of the waves [m]."""
+    last = heights[-round(1.0 / FREQUENCY / timestep) :]
+    return 0.5 * float(np.ptp(last))
+
+
+def _scene(name: str) -> Scene:
+    return read_scene(catalog.scenes()[name])
