@@ -56,6 +56,23 @@ def test_json_is_all_that_is_printed(run):
     assert summary["first_contact"] is None
 
 
+@pytest.mark.parametrize("method", ["exact", "convex_hull", "sections"])
+def test_a_method_is_chosen_and_its_options_set(run, method):
+    result = run("run", "hourglass_drop_still", "--method", method, "--duration", "0.1", "--no-record", "--json")
+    assert json.loads(result.stdout)["method"] == method
+    option = {"convex_hull": "method.cut=true", "sections": "method.step=0.01", "exact": "duration=0.05"}[method]
+    with_option = run("run", "auv_waves", "--method", method, "--set", option, "--duration", "0.05", "--no-record", "--json")
+    assert with_option.exit_code == 0, with_option.output
+
+
+def test_an_unknown_method_is_told(run):
+    one_sentence(run("run", "auv_waves", "--method", "hull", "--no-record"), "unknown kind 'hull'; .*exact")
+    one_sentence(
+        run("run", "auv_waves", "--method", "exact", "--set", "method.cut=true", "--no-record"),
+        "unknown key 'cut'; possible: nothing",
+    )
+
+
 def test_flags_reach_the_scene(run):
     arguments = ("--duration", "0.3", "--timestep", "0.05", "--set", "water.density=500", "--no-record", "--json")
     summary = json.loads(run("run", "hourglass_drop_still", *arguments).stdout)

@@ -180,6 +180,22 @@ def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
     assert ("/world/environment/environment/floor_west" in found) == (scene == "auv_pool")
 
 
+@pytest.mark.parametrize("method", ["convex_hull", "sections"])
+def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_the_forces(tmp_path, method):
+    found = []
+    for chosen in ("exact", method):
+        simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], [f"method={chosen}", "duration=0.01"]))
+        recording = Recording(simulation, tmp_path / f"{chosen}.rrd")
+        recording.add(next(simulation.frames()))
+        found.append({geom: wet.copy() for geom, wet in recording._wet.items()})
+        recording.close(simulation.summary())
+        assert rerun("verify", str(tmp_path / f"{chosen}.rrd")).returncode == 0
+        assert "/world/waterline" in entities(rerun("print", "-vv", str(tmp_path / f"{chosen}.rrd")).stdout)
+    exact, other = found
+    assert exact.keys() == other.keys()
+    assert all((exact[geom] == other[geom]).all() for geom in exact)
+
+
 def test_names_may_hold_anything(tmp_path):
     (tmp_path / "odd.xml").write_text(
         """<mujoco><worldbody><body name="my boat/2"><freejoint/><geom name="bow \u00e9 [1]" type="box" size=".2 .1 .1"

@@ -11,7 +11,7 @@ from buoyancy_mj import catalog
 from buoyancy_mj.assembly import assembled
 from buoyancy_mj.buoyancy import Buoyancy
 from buoyancy_mj.drag import Drag
-from buoyancy_mj.loads import Loads
+from buoyancy_mj.kernels import clip
 from buoyancy_mj.methods import Method
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.statics import DENSITY, METHODS
@@ -98,9 +98,8 @@ def distributed(quick: bool) -> Result:
     apart = strongest = 0.0
     waves = dataclasses.replace(_scene("auv_waves"), duration=0.5 if quick else 5.0)
     for name in ("exact", "convex hull", "sections"):
-        for _, wet in _steps(waves, METHODS[name]):
-            (each, one), scale = _joint_forces(*wet)
-            apart, strongest = max(apart, float(np.abs(each - one).max())), max(strongest, scale)
+        for each, one in (_joint_forces(*step) for step in _steps(waves, METHODS[name])):
+            apart, strongest = max(apart, float(np.abs(each - one).max())), max(strongest, float(np.abs(each).max()))
     names = ["mesh", "volume [m^3]", "x [m]", "y [m]", "z [m]", "force [N]"]
     table = table_of(names, [(name, float(v), *map(float, centroid), float(f)) for name, v, centroid, f in rows])
     return Result(
@@ -182,8 +181,8 @@ def oscillation(quick: bool) -> Result:
                 "the centre of gravity oscillates within 0.05 m on the waves, for some mass, damping and wave",
                 "within 0.05 m",
                 f"{len(within)} of {len(rows)} combinations do, with a damping against the world, as physics engines "
-                f"offer and water does not, of at least {least} of the displacement; without it the swing is {min(free):.2f} to "
-                f"{max(free):.2f} m whatever the mass, wave and drag of the water",
+                f"offer and water does not, of at least {least} of the displacement; without it the swing is "
+                f"{min(free):.2f} to {max(free):.2f} m whatever the mass, wave and drag of the water",
                 verdict(len(within) == len(rows), bool(within)),
             ),
         ),
@@ -241,48 +240,51 @@ def run(scene: Scene, method: Method, mass: float | None = None, rate: float = 0
         rate: damping [1/s] of all velocities of its root relative to the world, per mass and inertia, as
             physics engines have it ("linear damping").
     """
-    for (data, buoyancy), (_, _, loads) in _steps(scene, method, mass, rate):
+    for buoyancy, data, wet in _steps(scene, method, mass, rate):
+        now = float(data.time) - scene.timestep
         centre = buoyancy.centre_of_mass(data)
-        level = float(scene.water.elevation(centre[0], centre[1], data.time))
-        lowest = min(
-            float((h.mesh.vertices @ data.geom_xmat[h.geom][6:] + data.geom_xpos[h.geom][2]).min()) for h in buoyancy.hulls
-        )
-        yield Moment(float(data.time), float(centre[2]), level - lowest, float(loads.hull.force[:, 2].sum()))
+        level = float(scene.water.elevation(centre[0], centre[1], now))
+        heights = [h.mesh.vertices @ data.geom_xmat[h.geom][6:] + data.geom_xpos[h.geom][2] for h in buoyancy.hulls]
+        force = scene.water.density * buoyancy.gravity * wet[:, clip.VOLUME].sum()
+        yield Moment(now, float(centre[2]), level - min(float(z.min()) for z in heights), float(force))
 
 
 def _steps(
     scene: Scene, method: Method, mass: float | None = None, rate: float = 0.0
-) -> Iterator[tuple[tuple[mujoco.MjData, Buoyancy], tuple[mujoco.MjModel, mujoco.MjData, Loads]]]:
-    """Each step of a scene: the data at its beginning, and the loads then."""
+) -> Iterator[tuple[Buoyancy, mujoco.MjData, NDArray[np.float64]]]:
+    """Each step of a scene: the water, the data with the poses of its beginning, and what was wet then (h, 6)."""
     model, data, _ = assembled(scene)
     if mass is not None:
         factor = mass / model.body_mass.sum()
         model.body_mass *= factor
         model.body_inertia *= factor
         mujoco.mj_setConst(model, mujoco.MjData(model))
-    # mass and inertia about the joint's axes
+    # mass and inertia along and about the joint's axes
     model.dof_damping[:] = rate * model.dof_M0
     buoyancy = Buoyancy(model, scene.water, drag=scene.drag, method=method)
     with buoyancy.installed():
         for _ in range(round(scene.duration / scene.timestep)):
-            mujoco.mj_kinematics(model, data)
-            mujoco.mj_comPos(model, data)
-            yield (data, buoyancy), (model, data, buoyancy.evaluate(data))
             mujoco.mj_step(model, data)
+            yield buoyancy, data, buoyancy.packed.results
 
 
-def _joint_forces(model: mujoco.MjModel, data: mujoco.MjData, loads: Loads) -> tuple[NDArray[np.float64], float]:
-    """What a free body's joint feels (2, nv) of the meshes' forces one by one and of their resultant; and the largest."""
-    each, one = out = np.zeros((2, model.nv))
-    nothing = np.zeros(3)
-    for centroid, force in zip(loads.hull.centroid, loads.hull.force, strict=True):
-        if force[2] > 0.0:
-            mujoco.mj_applyFT(model, data, force, nothing, centroid, 1, each)
-    if loads.total.volume > 0.0:
-        wet = loads.hull.volume > 0.0
-        centre = loads.hull.volume[wet] @ loads.hull.centroid[wet] / loads.hull.volume[wet].sum()
-        mujoco.mj_applyFT(model, data, loads.hull.force.sum(axis=0), nothing, centre, 1, one)
-    return out, float(np.abs(each).max())
+def _joint_forces(
+    buoyancy: Buoyancy, data: mujoco.MjData, wet: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """What the joint of a free body feels (nv,) of the forces of its meshes, one by one, and of their resultant."""
+    each, one = np.zeros((2, buoyancy.model.nv))
+    some = wet[wet[:, clip.VOLUME] > 0.0]
+    upward = np.array([0.0, 0.0, buoyancy.water.density * buoyancy.gravity])
+
+    def apply(volume: float, centroid: NDArray[np.float64], out: NDArray[np.float64]) -> None:
+        mujoco.mj_applyFT(buoyancy.model, data, volume * upward, np.zeros(3), centroid, int(buoyancy.bodies[0]), out)
+
+    for row in some:
+        apply(row[clip.VOLUME], row[clip.CENTROID], each)
+    if len(some):
+        whole = some[:, clip.VOLUME].sum()
+        apply(whole, some[:, clip.VOLUME] @ some[:, clip.CENTROID] / whole, one)
+    return each, one
 
 
 def _swing(heights: NDArray[np.float64], timestep: float) -> float:
