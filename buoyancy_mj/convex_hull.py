@@ -89,6 +89,9 @@ class PackedConvexHulls:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         sort = self._ages(positions, rotations, time)
         for h, frame in enumerate(self.frames):
+            if not (np.isfinite(positions[frame]).all() and np.isfinite(rotations[frame]).all()):
+                self.results[h] = np.nan
+                continue
             points = self._wet(h, positions[frame], rotations[frame], time, sort)
             if len(points) > 3:
                 self._counts["hulls"] += 1

@@ -104,6 +104,9 @@ class PackedSections:
     def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         for h, frame in enumerate(self.frames):
+            if not (np.isfinite(positions[frame]).all() and np.isfinite(rotations[frame]).all()):
+                self.results[h] = np.nan
+                continue
             origin, turn = positions[frame], rotations[frame].reshape(3, 3)
             x, y, z = origin + turn @ self._middles[h]
             depth = float(self.water.elevation(x, y, time)) - z

@@ -366,6 +366,14 @@ def test_what_makes_no_sense_is_told(make, message):
         make()
 
 
+@pytest.mark.parametrize("method", ALL, ids=repr)
+@pytest.mark.parametrize("position", [(np.nan, np.nan, np.nan), (0.0, 0.0, np.inf), (0.0, 0.0, -np.inf)])
+def test_a_pose_that_left_the_finite_numbers_gives_no_number(method, position):
+    packed = method.packed([CONVEX["box"]], [0], [0], Water())
+    assert np.isnan(packed.submerge(np.array([position]), np.eye(3).reshape(1, 9), 0.0)[0, 0])
+    assert packed.submerge(np.zeros((1, 3)) - [0, 0, 1.0], np.eye(3).reshape(1, 9), 0.01)[0, 0] > 0.0
+
+
 # in the engine ----------------------------------------------------------------------------------------
 
 
