@@ -68,6 +68,7 @@ def table_of(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> Table:
 
 def percent(value: float, *, sign: bool = False) -> str:
     """A fraction as a percentage, with as many digits as it deserves."""
+    value = 0.0 if abs(value) < 1e-9 else value
     size = abs(100.0 * value)
     digits = ".0f" if size >= 10.0 else ".1f" if size >= 0.1 else ".1g"
     return f"{100.0 * value:{'+' if sign else ''}{digits}} %"
