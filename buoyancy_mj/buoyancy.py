@@ -63,7 +63,8 @@ class Buoyancy:
         """The hulls, in the order of the model's geoms."""
         self._hull_bodies = np.array([hull.body for hull in self.hulls])
         frames = [hull.geom for hull in self.hulls]
-        self.packed = self.method.packed([hull.mesh for hull in self.hulls], frames, self._hull_bodies, self.water)
+        turns = [hull.body_from_geom for hull in self.hulls]
+        self.packed = self.method.packed([hull.mesh for hull in self.hulls], frames, self._hull_bodies, self.water, turns)
         self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
         self.bodies = np.array(sorted({hull.body for hull in self.hulls}))
         """Indices of the bodies that have hulls."""
@@ -93,7 +94,7 @@ class Buoyancy:
 
     def _apply(self, data: mujoco.MjData) -> None:
         """Compute the loads and add them to `data.qfrc_passive`."""
-        self._compute(data)
+        self._compute(data, data._address)
         passive = data.qfrc_passive
         # finite differences call the callback again without computing qfrc_passive anew
         if data._address == self._last_data and np.array_equal(passive, self._after):
@@ -129,7 +130,8 @@ class Buoyancy:
     def evaluate(self, data: mujoco.MjData) -> Loads:
         """The loads at the poses and velocities that `data` holds, as mj_forward left them; writes nothing."""
         with self._lock:
-            self._compute(data)
+            # as a run of its own, so that what the callback carries from step to step stays untouched
+            self._compute(data, -data._address)
             wet, centres, rows = self.packed.results.copy(), self._centres.copy(), self._sum.copy()
             causes = {cause: wrench.copy() for cause, wrench in self._causes.items()}
         xipos = data.xipos
@@ -162,10 +164,10 @@ class Buoyancy:
         masses = self.model.body_mass[self.floating]
         return masses @ data.xipos[self.floating] / masses.sum()
 
-    def _compute(self, data: mujoco.MjData) -> None:
+    def _compute(self, data: mujoco.MjData, run: int) -> None:
         """Submersion, then each cause, then their sum, into the arrays made at construction."""
         weight = self.water.density * self.gravity
-        wet = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time)
+        wet = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
         wrenches.merge(wet, self._hull_bodies, self._centres)
         buoyancy = self._causes["buoyancy"]
         buoyancy[:] = 0.0

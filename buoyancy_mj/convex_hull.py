@@ -6,6 +6,7 @@ vertices is no centroid.
 """
 
 import dataclasses
+from collections import OrderedDict
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
@@ -22,6 +23,11 @@ CENTROIDS = ("vertices", "hull")
 """What may stand for the centre of buoyancy: the mean of the hull's vertices, or its true centroid."""
 FLAT = 1e-12
 """Smallest over largest extent of a set of points that counts as flat."""
+JUMP, NUDGE = 0.3, 0.01
+"""How far a body may go from call to call, in turns [rad] and hull lengths, before it counts as set there by hand:
+from step to step, and at one time, where RK4 tries several poses."""
+MOST_RUNS = 64
+"""Runs whose orders are kept."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -40,25 +46,48 @@ class ConvexHull:
     resort_every: int = 10
     """Steps after which the vertices are sorted by height above the surface anew; 0 looks at all of them each step.
 
-    A step is a call at a later time than the last. Between sorts the vertices are walked from the
-    one that was lowest until one is dry, so that a body that turns meanwhile may lose some."""
+    A step is a call at a later time than the last; RK4 makes two of them, and poses set by hand sort
+    at once. Between sorts the vertices are walked from the one that was lowest until one is dry, so
+    that a body that turns meanwhile may lose some."""
 
     def __post_init__(self) -> None:
         if self.centroid not in CENTROIDS:
             raise MethodError(f"centroid is {self.centroid!r}; {choices(str(self.centroid), CENTROIDS)}")
-        if isinstance(self.resort_every, bool) or not isinstance(self.resort_every, int) or self.resort_every < 0:
+        if not isinstance(self.cut, bool):
+            raise MethodError(f"cut is {self.cut!r}; it must be True or False")
+        if (
+            isinstance(self.resort_every, bool)
+            or not isinstance(self.resort_every, int | np.integer)
+            or self.resort_every < 0
+        ):
             raise MethodError(f"resort_every is {self.resort_every!r}; it must be a number of steps, or 0 for no sorting")
 
-    def packed(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> "PackedConvexHulls":
+    def packed(
+        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+    ) -> "PackedConvexHulls":
         """Hulls ready to be submerged, see `PackedConvexHulls`."""
         return PackedConvexHulls(self, meshes, frames, water)
 
 
+class _Run:
+    """The order of vertices that a run carries from step to step."""
+
+    def __init__(self, orders: Sequence[NDArray[np.int64]]) -> None:
+        self.orders = list(orders)
+        """Indices of the vertices of each hull, the lowest first."""
+        self.age = 0
+        """Steps since they were sorted."""
+        self.time = np.nan
+        """Of the last call [s]."""
+        self.poses = np.empty((0, 12))
+        """Of the hulls then."""
+
+
 class PackedConvexHulls:
-    """Hulls whose submersion is that of the convex hulls of their wet vertices; their order is kept from call to call."""
+    """Hulls whose submersion is that of the convex hulls of their wet vertices."""
 
     def __init__(self, method: ConvexHull, meshes: Sequence[TriMesh], frames: ArrayLike, water: Water) -> None:
-        """Pack `meshes`, see `methods.Packed`."""
+        """Pack `meshes`, see `methods.Method`."""
         self.method = method
         self.water = water
         self.frames = np.asarray(frames, np.int64)
@@ -66,66 +95,71 @@ class PackedConvexHulls:
         """True volumes of the meshes (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
-        # vertices that no face uses are no part of the mesh
-        self._vertices = [np.ascontiguousarray(mesh.vertices[np.unique(mesh.faces)]) for mesh in meshes]
-        self._edges = [_edges(mesh) for mesh in meshes] if method.cut else []
+        self._vertices = [mesh.compact[0] for mesh in meshes]
+        self._edges = [_edges(mesh.compact[1]) for mesh in meshes] if method.cut else []
         self._all = [np.arange(len(vertices)) for vertices in self._vertices]
-        self._orders = list(self._all)
+        self._length = max(float(np.ptp(vertices, axis=0).max()) for vertices in self._vertices)
+        self._runs: OrderedDict[int, _Run] = OrderedDict()
         self._points = np.empty((max(len(vertices) for vertices in self._vertices), 4))
-        self._age, self._time, self._poses = 0, np.nan, np.empty(0)
-        self._counts = dict.fromkeys(("steps", "vertices", "vertex_checks", "sorts", "hulls", "hull_points"), 0)
+        self._counts = dict.fromkeys(("calls", "vertices", "vertex_checks", "sorts", "hulls", "hull_points"), 0)
 
     @property
     def counts(self) -> Mapping[str, int]:
         """Work done so far.
 
-        `steps` is calls, `vertices` the vertices of all meshes times these, `vertex_checks` how many
+        `vertices` is the vertices of all meshes times the calls, `vertex_checks` how many
         of them were compared with the surface, `sorts` how often an order was made, `hulls` how often
         Quickhull ran and `hull_points` on how many points in all.
         """
         return dict(self._counts)
 
-    def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+    def submerge(
+        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+    ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
-        sort = self._ages(positions, rotations, time)
+        state = self._runs.pop(run, None) or _Run(self._all)
+        # those that were not heard of for long have ended
+        self._runs[run] = state
+        if len(self._runs) > MOST_RUNS:
+            self._runs.popitem(last=False)
+        sort = self._ages(state, positions, rotations, time)
         for h, frame in enumerate(self.frames):
             if not (np.isfinite(positions[frame]).all() and np.isfinite(rotations[frame]).all()):
                 self.results[h] = np.nan
                 continue
-            points = self._wet(h, positions[frame], rotations[frame], time, sort)
+            points = self._wet(h, state, positions[frame], rotations[frame], time, sort)
             if len(points) > 3:
                 self._counts["hulls"] += 1
                 self._counts["hull_points"] += len(points)
             volume, centroid = hull_moments(points, self.method.centroid)
             self.results[h] = volume, *(centroid + positions[frame]), np.nan, np.nan
-        self._counts["steps"] += 1
+        self._counts["calls"] += 1
         return self.results
 
-    def _ages(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> bool:
-        """Whether the orders must be made anew: they are as many steps old, or the bodies were moved by hand."""
-        every = self.method.resort_every
-        poses = np.hstack([positions[self.frames], rotations[self.frames]])
-        later = time > self._time
-        moved = not later and not (time == self._time and np.array_equal(poses, self._poses))
-        self._age += later
-        self._time, self._poses = time, poses
-        if every and (moved or self._age >= every):
-            self._age = 0
+    def _ages(self, run: _Run, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> bool:
+        """Whether the orders must be made anew: they are as many steps old, or the bodies were set elsewhere by hand."""
+        poses = np.hstack([rotations[self.frames], positions[self.frames] / self._length])
+        later = time > run.time
+        moved = not time >= run.time or not np.abs(poses - run.poses).max() <= (JUMP if later else NUDGE)
+        run.age += later
+        run.time, run.poses = time, poses
+        if self.method.resort_every and (moved or run.age >= self.method.resort_every):
+            run.age = 0
             return True
         return False
 
     def _wet(
-        self, h: int, origin: NDArray[np.float64], rotation: NDArray[np.float64], time: float, sort: bool
+        self, h: int, run: _Run, origin: NDArray[np.float64], rotation: NDArray[np.float64], time: float, sort: bool
     ) -> NDArray[np.float64]:
         """Points (n, 3) [m] of a hull that span what is wet of it, relative to the origin of its frame."""
         walk = self.method.resort_every > 0 and not sort
-        order = self._orders[h] if walk else self._all[h]
+        order = run.orders[h] if walk else self._all[h]
         placed = self._placed(h, order, walk, origin, rotation, time)
         self._counts["vertices"] += len(order)
         self._counts["vertex_checks"] += len(placed)
         if sort:
             self._counts["sorts"] += 1
-            self._orders[h] = np.argsort(-placed[:, 3], kind="stable")
+            run.orders[h] = np.argsort(-placed[:, 3], kind="stable")
         wet = placed[:, 3] > 0.0
         points = placed[wet]
         if self.method.cut:
@@ -166,7 +200,7 @@ def hull_moments(points: NDArray[np.float64], centroid: str = "hull") -> tuple[f
     it. Fewer than four points, flat sets and coincident points enclose nothing: 0 and NaN.
     """
     nothing = 0.0, np.full(3, np.nan)
-    if len(points) < 4:
+    if len(points) < 4 or not np.isfinite(points).all():
         return nothing
     try:
         hull = spatial.ConvexHull(points)
@@ -175,7 +209,10 @@ def hull_moments(points: NDArray[np.float64], centroid: str = "hull") -> tuple[f
         if extents[2] <= FLAT * extents[0]:
             return nothing
         # facets that cannot be told apart: Qhull shakes the points a little
-        hull = spatial.ConvexHull(points, qhull_options="QJ")
+        try:
+            hull = spatial.ConvexHull(points, qhull_options="QJ")
+        except spatial.QhullError:
+            return nothing
     middle = points[hull.vertices].mean(axis=0)
     a, b, c = (points - middle)[hull.simplices.T]
     # Qhull gives the outward normals, but not the order of the corners
@@ -188,8 +225,7 @@ def hull_moments(points: NDArray[np.float64], centroid: str = "hull") -> tuple[f
     return volume, middle if centroid == "vertices" else middle + tetrahedra @ (a + b + c) / (4.0 * volume)
 
 
-def _edges(mesh: TriMesh) -> NDArray[np.int64]:
-    """Edges (e, 2) of a mesh, each once, in indices of its used vertices."""
-    faces = np.unique(mesh.faces, return_inverse=True)[1].reshape(-1, 3)
+def _edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Edges (e, 2) of faces, each once."""
     edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
     return np.unique(edges, axis=0)

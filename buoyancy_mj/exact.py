@@ -25,7 +25,9 @@ class Exact:
 
     name: ClassVar[str] = "exact"
 
-    def packed(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> "PackedHulls":
+    def packed(
+        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+    ) -> "PackedHulls":
         """Hulls ready to be submerged, see `PackedHulls`."""
         return PackedHulls(meshes, frames, bodies, water)
 
@@ -72,13 +74,16 @@ class PackedHulls:
         """Work done so far: not counted here."""
         return {}
 
-    def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+    def submerge(
+        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+    ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`.
 
         Args:
             positions: origins of the frames (n, 3) [m], world frame.
             rotations: world_from_frame of the frames, row-major (n, 9).
             time: [s].
+            run: whose step this is; nothing is carried from step to step.
         """
         clip.submerge_hulls(
             self._vertices,

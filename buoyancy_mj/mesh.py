@@ -103,6 +103,12 @@ class TriMesh:
         """Sides of the axis-aligned bounding box (3,) [m]."""
         return np.ptp(self.vertices, axis=0)
 
+    @cached_property
+    def compact(self) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+        """Vertices (n, 3) [m] that faces use, and the faces (m, 3) in their indices."""
+        used, faces = np.unique(self.faces, return_inverse=True)
+        return np.ascontiguousarray(self.vertices[used]), faces.reshape(-1, 3)
+
     def transformed(self, rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> "TriMesh":
         """The mesh turned by a rotation matrix (3, 3), then moved by `translation` (3,) [m]."""
         moved = object.__new__(TriMesh)

@@ -27,13 +27,16 @@ class Packed(Protocol):
         """Work done so far, in the method's own units."""
         ...
 
-    def submerge(self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+    def submerge(
+        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+    ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`.
 
         Args:
             positions: origins of the frames (n, 3) [m], world frame.
             rotations: world_from_frame of the frames, row-major (n, 9).
             time: [s].
+            run: whose step this is; a method that carries something from step to step does so within a run.
         """
         ...
 
@@ -46,7 +49,9 @@ class Method(Protocol):
         """What it is called in scenes and on the command line."""
         ...
 
-    def packed(self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water) -> Packed:
+    def packed(
+        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+    ) -> Packed:
         """Hulls ready to be submerged.
 
         Args:
@@ -54,6 +59,7 @@ class Method(Protocol):
             frames: which row of positions and rotations places each (h,).
             bodies: hulls of one number (h,) move together.
             water: the sea.
+            turns: body_from_frame, how the frame of each hull is turned in its body (h, 3, 3); None for not at all.
         """
         ...
 
@@ -74,6 +80,6 @@ def method_of(method: str | Method) -> Method:
         if method not in METHODS:
             raise MethodError(f"unknown method '{method}'; {choices(method, METHODS)}")
         return METHODS[method]()
-    if not hasattr(method, "packed"):
+    if isinstance(method, type) or not hasattr(method, "packed"):
         raise MethodError(f"{method!r} is no method; possible are {', '.join(METHODS)}, or one of them with options")
     return method

@@ -157,7 +157,9 @@ def _water(table: Mapping[str, Any], where: str) -> Water:
 def _method(value: Any, where: str) -> Method:
     """A method by its name, or a table of its `kind` and its options."""
     plain = {"kind": value} if isinstance(value, str) else dict(_table(value, where))
-    kind = plain.pop("kind", None)
+    if "kind" not in plain:
+        raise SceneError(f"{where}: 'kind' is missing; needed is one of {', '.join(METHODS)}")
+    kind = plain.pop("kind")
     if not isinstance(kind, str) or kind not in METHODS:
         raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), METHODS)}")
     return built(METHODS[kind], plain, where)

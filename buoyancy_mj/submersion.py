@@ -58,10 +58,12 @@ def submerge(
     if turn.shape != (3, 3) or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) or np.linalg.det(turn) < 0.0:
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
     chosen, sea = method_of(method), water or Water()
-    with _LOCK:
-        # other methods carry something from step to step
-        packed = _packed(mesh, sea) if chosen == Exact() else chosen.packed([mesh], [0], [0], sea)
-        row = packed.submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
+    if chosen == Exact():
+        with _LOCK:
+            row = _packed(mesh, sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
+    else:
+        # may carry something from step to step
+        row = chosen.packed([mesh], [0], [0], sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0]
     return Submersion(
         volume=float(row[clip.VOLUME]),
         centroid=row[clip.CENTROID],

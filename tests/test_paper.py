@@ -78,6 +78,8 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
     assert "A coarse, quick run; do not quote it." in page
 
     verdicts = {claim: holds for claim, _, _, holds, _ in rows}
+    # the page that is committed tells of the same claims
+    assert [row[0] for row in table(PAGE / "claims.csv")[1]] == list(verdicts)
     assert all(f"| {claim} |" in page for claim in verdicts)
     for part, holds in (
         ("correspond linearly", "no"),
@@ -89,10 +91,10 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
         ("dense meshes: catamaran", "no"),
         ("dense meshes: AUV as one mesh", "no"),
         ("forces of several meshes", "yes"),
-        ("the force adapts", "yes"),
+        ("the force adapts", "in part"),
         ("as our scenes have them", "no"),
         ("up to 15 % off", "in part"),
-        ("fewer iterations", "yes"),
+        ("fewer iterations", "in part"),
         ("sorting the vertices", "in part"),
     ):
         (found,) = (verdict for claim, verdict in verdicts.items() if part in claim)
@@ -163,8 +165,10 @@ def test_the_committed_page_is_a_whole_one_with_all_its_figures():
     for name in re.findall(r"\]\((?!http)([^)]+)\)", page):
         assert (PAGE / name).is_file(), name
     _, rows = table(PAGE / "claims.csv")
-    for claim, *_, holds, command in rows:
-        assert f"| {claim} |" in page
+    # written by what is here, but for the machine
+    own = report.page(report.HEADER, rows, quick=False).splitlines()
+    assert [line for line in page.splitlines() if "cores" not in line] == [line for line in own if "cores" not in line]
+    for *_, holds, command in rows:
         assert holds in ("yes", "no", "in part")
         assert command.removeprefix("buoyancy-mj paper --only ") in STUDIES
     # all that the studies write, and nothing left of older ones

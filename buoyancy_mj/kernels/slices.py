@@ -37,12 +37,13 @@ def sections(
     heights,  # (n,) ascending values of s
     out,  # (n, 3) area and its first moments int u dA, int v dA
 ):
-    """Cross-sections of a closed mesh perpendicular to s, just above each height.
+    """Cross-sections of a closed mesh perpendicular to s, just above each height; how many triangles they meet.
 
     Each triangle that a section meets gives it one edge, its inside on the left, and by Green the
     area is half the sum of cross products of the edges' ends: no contour has to be joined up.
     """
     out[:, :] = 0.0
+    crossings = 0
     for f in range(faces.shape[0]):
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         low = min(points[a, 2], points[b, 2], points[c, 2])
@@ -59,6 +60,7 @@ def sections(
             s = heights[i]
             if s >= high:
                 break
+            crossings += 1
             # turn the triangle so that corner p is alone on its side
             up_a, up_b, up_c = points[a, 2] > s, points[b, 2] > s, points[c, 2] > s
             if up_b == up_c:
@@ -75,3 +77,4 @@ def sections(
             out[i, 0] += cross / 2.0
             out[i, 1] += cross * (u0 + u1) / 6.0
             out[i, 2] += cross * (v0 + v1) / 6.0
+    return crossings

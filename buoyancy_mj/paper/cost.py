@@ -22,25 +22,27 @@ from buoyancy_mj.water import Water
 
 
 def timing(quick: bool) -> Result:
-    """Wall time of one update by each method, on the vehicles that ship."""
+    """Wall time of one update by each method, on the vehicles that ship, floating as they rest."""
     rows = []
-    worst: dict[str, float] = {}
-    for vehicle in ("hourglass", "sauvc_auv"):
+    late: dict[str, dict[str, float]] = {}
+    for vehicle, height in (("hourglass", -0.1), ("sauvc_auv", -0.17)):
         model = solids.model_of(vehicle)
         for name, method in (METHODS | {"sections, axis of the body": FIXED}).items():
-            times = _update_times(model, method, 30 if quick else 300)
-            median, late, longest = np.percentile(times, [50, 99, 100])
-            rows.append((vehicle, name, 1e3 * median, 1e3 * late, 1e3 * longest))
-            worst[name] = max(worst.get(name, 0.0), float(late))
-    told = listed({name: f"{1e3 * value:.2g} ms" for name, value in worst.items()})
+            times = _update_times(model, method, height, 30 if quick else 300)
+            rows.append((vehicle, name, *(1e3 * np.percentile(times, [50, 99, 100]))))
+            late.setdefault(vehicle, {})[name] = float(np.percentile(times, 99))
+    told = {
+        vehicle: listed({name: f"{1e3 * value:.2g} ms" for name, value in found.items()}) for vehicle, found in late.items()
+    }
+    every = [value for found in late.values() for value in found.values()]
     return Result(
         {"timing": table_of(["vehicle", "method", "median [ms]", "99 % below [ms]", "longest [ms]"], rows)},
         (
             Claim(
                 "updates at 60 Hz",
                 "60 Hz, 16.7 ms each",
-                f"99 % of the updates of the AUV's 15 meshes take less than {told}",
-                verdict(worst["convex hull"] < 1.0 / 60.0, worst["sections"] < 1.0 / 60.0),
+                f"99 % of the updates take less than, AUV of 15 meshes: {told['sauvc_auv']}; hourglass: {told['hourglass']}",
+                verdict(max(every) < 1.0 / 60.0, min(every) < 1.0 / 60.0),
             ),
         ),
     )
@@ -49,7 +51,7 @@ def timing(quick: bool) -> Result:
 def work(quick: bool) -> Result:
     """Vertices looked at, points given to Quickhull, sections cut: in the paper's runs of 5 s at 0.01 s."""
     rows = []
-    saved, fewer, lost = {}, {}, {}
+    saved, fewer, more, lost = {}, {}, {}, {}
     for name in ("hourglass_drop_still", "hourglass_drop_waves", *(() if quick else ("auv_drop_still",))):
         scene = dataclasses.replace(read_scene(catalog.scenes()[name]), duration=1.0 if quick else 5.0)
         counts, volumes = {}, {}
@@ -59,19 +61,23 @@ def work(quick: bool) -> Result:
             rows.append((name, variant, *(float(counts[variant].get(key, np.nan)) for key in _COUNTS), float(iterations)))
         plain, tenth = counts["convex hull, all vertices"], counts["convex hull, sorted every 10 steps"]
         saved[name] = 1.0 - tenth["vertex_checks"] / plain["vertex_checks"]
-        fewer[name] = 1.0 - counts["sections"]["sections"] / (tenth["vertex_checks"] + tenth["hull_points"])
+        points = tenth["vertex_checks"] + tenth["hull_points"]
+        fewer[name] = 1.0 - counts["sections"]["sections"] / points
+        more[name] = counts["sections"]["crossings"] / points
         truth = volumes["convex hull, all vertices"]
         lost[name] = float(np.abs(volumes["convex hull, sorted every 10 steps"] - truth).max() / truth.max())
     told = [listed({name: percent(value) for name, value in values.items()}) for values in (fewer, saved, lost)]
+    met = listed({name: f"{value:.2g} x" for name, value in more.items()})
     return Result(
         {"work": table_of(["scene", "method", *_COUNTS.values(), "iterations"], rows)},
         (
             Claim(
                 "sections take fewer iterations than the hull",
                 "40 % fewer",
-                f"fewer by {told[0]}: cross-sections cut, against vertices looked at and given to Quickhull; the paper does "
-                "not say what it counts, and a section costs more than a vertex: see the wall times",
-                verdict(all(v >= 0.4 for v in fewer.values()), any(v >= 0.4 for v in fewer.values())),
+                "the paper does not say what it counts. Cross-sections are fewer than vertices looked at and given to "
+                f"Quickhull by {told[0]}; but the triangles that they meet are {met} as many. The wall times of the "
+                "updates at 60 Hz weigh them fairly",
+                verdict(max(more.values()) < 0.6, min(fewer.values()) >= 0.4),
             ),
             Claim(
                 "sorting the vertices every 10 steps saves checks",
@@ -94,13 +100,14 @@ VARIANTS: dict[str, Method] = {
 
 
 _COUNTS = {
-    "steps": "steps",
+    "calls": "steps",
     "vertices": "vertices to look at",
     "vertex_checks": "vertices looked at",
     "sorts": "sorts",
     "hulls": "hulls",
     "hull_points": "points of hulls",
     "sections": "sections",
+    "crossings": "triangles that they meet",
 }
 
 
@@ -119,10 +126,10 @@ def _followed(scene: Scene, method: Method) -> tuple[NDArray[np.float64], Mappin
     return volumes, follower.packed.counts
 
 
-def _update_times(model: mujoco.MjModel, method: Method, repeats: int) -> NDArray[np.float64]:
+def _update_times(model: mujoco.MjModel, method: Method, height: float, repeats: int) -> NDArray[np.float64]:
     """Wall times (n,) [s] of evaluations of a vehicle at the surface, one timestep after the other."""
     data = mujoco.MjData(model)
-    data.qpos[2] = -0.05
+    data.qpos[2] = height
     mujoco.mj_forward(model, data)
     buoyancy = Buoyancy(model, Water(), method=method)
 

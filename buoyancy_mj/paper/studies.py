@@ -29,7 +29,7 @@ _ALL = (
         "Buoyancy against submersion",
         motion.force,
         figures.force,
-        "The dots of the drop lie on the curves: the force is that of the present pose, at every step.",
+        "The dots of the upright drop lie on the curves: the force is that of the present pose.",
     ),
     Study("areas", "Areas of cross-sections against z", statics.areas, figures.areas, "What the sections integrate."),
     Study(
