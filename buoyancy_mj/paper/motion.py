@@ -70,7 +70,7 @@ def force(quick: bool) -> Result:
         }
         off = np.array([found - present for found, present in _against_present(tilted, method)])
         late = _longest(np.abs(off) > 0.01 * np.abs(slow[f"{name} [N]"]).max()) * tilted.timestep
-        told[name] = f"up to {np.abs(off).max():.1g} N off for {1e3 * late:.0f} ms"
+        told[name] = f"up to {np.abs(off).max():.2g} N off for {1e3 * late:.0f} ms"
         latest = max(latest, late)
     return Result(
         {"force": slow, "force_in_a_drop": drop},
