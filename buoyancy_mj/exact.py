@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.mesh import TriMesh, refined
+from buoyancy_mj.tree import grown, slack
 from buoyancy_mj.water import Water
 
 WAVE_TOLERANCE = 2e-3
@@ -55,15 +56,25 @@ class PackedHulls:
         """Whole volumes (h,) [m^3]."""
         edges = _longest_edges(meshes, np.asarray(bodies), water)
         fine = [refined(mesh.vertices, mesh.faces, edge) for mesh, edge in zip(meshes, edges, strict=True)]
+        trees = [grown(vertices, faces, water) for vertices, faces in fine]
         self._vertices = np.concatenate([vertices for vertices, _ in fine])
         self._vertex_starts = np.cumsum([0, *(len(vertices) for vertices, _ in fine)])
-        # unsigned, since Numba asks of a signed index whether it counts from the end
-        self._faces = np.concatenate(
-            [faces + start for (_, faces), start in zip(fine, self._vertex_starts[:-1], strict=True)]
-        ).astype(np.uint32)
         self._face_starts = np.cumsum([0, *(len(faces) for _, faces in fine)])
+        self._nodes = np.cumsum([0, *(len(tree.first) for tree in trees)])
+        # unsigned, since Numba asks of a signed index whether it counts from the end
+        self._faces = np.concatenate([t.faces + start for t, start in zip(trees, self._vertex_starts, strict=False)]).astype(
+            np.uint32
+        )
+        self._first = np.concatenate([t.first + start for t, start in zip(trees, self._face_starts, strict=False)])
+        self._last = np.concatenate([t.last + start for t, start in zip(trees, self._face_starts, strict=False)])
+        self._skip = np.concatenate([t.skip + start for t, start in zip(trees, self._nodes, strict=False)])
+        self._boxes = np.concatenate([t.boxes for t in trees])
+        self._moments = np.concatenate([t.moments for t in trees])
+        self._slacks = np.array([slack(mesh, water) for mesh in meshes])
         a, b, c = self._vertices[self._faces.T]
         self._face_areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        self._stamps, self._stamp = np.zeros(len(self._vertices), np.int64), 0
+        self._leaves = np.empty(len(self._first), np.int64)
         self._waves = water.rows
         self._points = np.empty((len(self._vertices), 4))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
@@ -85,12 +96,20 @@ class PackedHulls:
             time: [s].
             run: whose step this is; nothing is carried from step to step.
         """
+        self._stamp += 1
         clip.submerge_hulls(
             self._vertices,
             self._vertex_starts,
             self._faces,
             self._face_starts,
             self._face_areas,
+            self._nodes,
+            self._first,
+            self._last,
+            self._skip,
+            self._boxes,
+            self._moments,
+            self._slacks,
             self._whole,
             self.frames,
             positions,
@@ -98,7 +117,10 @@ class PackedHulls:
             self.water.level,
             self._waves,
             time,
+            self._stamp,
             self._points,
+            self._stamps,
+            self._leaves,
             self.results,
         )
         return self.results

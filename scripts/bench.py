@@ -3,7 +3,8 @@
     .venv/bin/python scripts/bench.py [--quick] [--save F.json] [--compare F.json]
 
 Medians over repeats on one core: a submersion against trimesh's capped slice and against scipy's
-convex hull of the wet vertices on the same mesh and poses; a step of a scene with water against
+convex hull of the wet vertices on the same mesh and poses; the tree of moments against the plain
+way; a step of a scene with water against
 the same step without; the real-time factor of `auv_waves`.
 """
 
@@ -14,6 +15,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from unittest import mock
 
 import mujoco
 import numpy as np
@@ -23,7 +25,7 @@ from rich.table import Table
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, catalog, read_scene, submerge
+from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, catalog, exact, read_scene, submerge, tree
 from buoyancy_mj.recording import Recording
 
 POSES = [(np.array([0.0, 0.0, 0.2 * np.sin(i)]), Rotation.random(random_state=i).as_matrix()) for i in range(5)]
@@ -65,6 +67,36 @@ def submersions(subdivisions: int, least: float) -> dict[str, float]:
         "trimesh": median_time(by_trimesh, least),
         "hull": median_time(by_hull, least),
     }
+
+
+def tree_ratios(triangles: int, least: float) -> dict[str, float]:
+    """Times with the tree over those of the plain way, of a ball and of a plate that lies in the surface, its worst case."""
+    ball = trimesh.creation.icosphere(subdivisions=round(np.log2(triangles / 20) / 2), radius=0.5)
+    plate = trimesh.creation.box([0.8, 0.6, 0.01])
+    while len(plate.faces) < triangles / 2:
+        plate = plate.subdivide()
+    still, waves = Water(), Water(waves=RegularWave(0.05, wavelength=5.0))
+    rows = {}
+    for name, solid, turns in (("ball", ball, [turn for _, turn in POSES]), ("plate", plate, [np.eye(3)] * len(POSES))):
+        for surface, water in (("still", still), ("waves", waves)):
+            way = {few: tree_or_plain(TriMesh(solid.vertices, solid.faces), water, few) for few in (0, 10**9)}
+            # turn about, so that both see the same machine
+            times = {few: [] for few in way}
+            started = time.perf_counter()
+            while time.perf_counter() - started < 2.0 * least:
+                for turn in turns:
+                    for few, hulls in way.items():
+                        before = time.perf_counter()
+                        hulls.submerge(np.zeros((1, 3)), turn.reshape(1, 9), 0.0)
+                        times[few].append(time.perf_counter() - before)
+            rows[f"{name}, {surface}"] = statistics.median(times[0]) / statistics.median(times[10**9])
+    return {"triangles": float(len(ball.faces))} | rows
+
+
+def tree_or_plain(mesh: TriMesh, water: Water, few: int) -> exact.PackedHulls:
+    """A mesh with a tree (few = 0) or with one leaf."""
+    with mock.patch.multiple(tree, FEW=few, FEW_IN_WAVES=few):
+        return exact.PackedHulls([mesh], [0], [0], water)
 
 
 def scene_step(name: str, least: float) -> dict[str, float]:
@@ -128,6 +160,14 @@ def main() -> None:
         )
     console.print(table)
 
+    trees = [tree_ratios(20 * 4**n, least) for n in ((4,) if options.quick else (4, 5, 6))]
+    table = Table(title="time with the tree over time without, same mesh and poses")
+    for column in trees[0]:
+        table.add_column(column, justify="right")
+    for row in trees:
+        table.add_row(f"{row['triangles']:,.0f}", *(f"{row[column]:.2f}" for column in row if column != "triangles"))
+    console.print(table)
+
     steps = {name: scene_step(name, least) for name in ("auv_drop_still", "auv_waves")}
     for name, step in steps.items():
         ratio = step["with"] / step["without"]
@@ -139,7 +179,12 @@ def main() -> None:
         f"auv_waves: {factors['headless']:.1f} x real time headless, {factors['recorded']:.1f} x recorded at 60 Hz"
     )
 
-    results = {"submersion": {f"{row['triangles']:.0f}": row for row in sizes}, "step": steps, "real_time": factors}
+    results = {
+        "submersion": {f"{row['triangles']:.0f}": row for row in sizes},
+        "tree": {f"{row['triangles']:.0f}": row for row in trees},
+        "step": steps,
+        "real_time": factors,
+    }
     if options.compare:
         before = flat(json.loads(options.compare.read_text()))
         for key, value in flat(results).items():

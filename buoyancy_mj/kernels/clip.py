@@ -71,12 +71,169 @@ def _placed(origin, r, x, y, z):
 
 
 @njit(cache=True)
+def _triangles(faces, face_areas, first, last, points):
+    """Volume, first moments, horizontal area and wetted area under the faces from `first` up to `last`, placed before."""
+    v = mx = my = mz = p = area = 0.0
+    for f in range(first, last):
+        a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
+        d0, d1, d2 = points[a, 3], points[b, 3], points[c, 3]
+        if d0 <= 0.0 and d1 <= 0.0 and d2 <= 0.0:
+            continue
+        x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
+        x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
+        x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
+        if d0 > 0.0 and d1 > 0.0 and d2 > 0.0:
+            part = _moments(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
+            area += face_areas[f]
+        else:
+            part, fraction = _cut(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
+            area += fraction * face_areas[f]
+        v += part[0]
+        mx += part[1]
+        my += part[2]
+        mz += part[3]
+        p += part[4]
+    return v, mx, my, mz, p, area
+
+
+@njit(cache=True)
+def _place(vertices, first, last, origin, r, level, waves, time, points):
+    """Vertices from `first` up to `last`, relative to the origin, turned as the world, and their depths."""
+    for i in range(first, last):
+        x, y, z = _turned(r, vertices[i, 0], vertices[i, 1], vertices[i, 2])
+        points[i, 0], points[i, 1], points[i, 2] = x, y, z
+        points[i, 3] = level + elevation(waves, origin[0] + x, origin[1] + y, time) - (origin[2] + z)
+
+
+@njit(cache=True)
+def _place_corners(vertices, faces, first, last, stamp, stamps, origin, r, level, waves, time, points):
+    """The same of the corners of faces from `first` up to `last`, unless they bear the stamp already."""
+    for f in range(first, last):
+        for corner in range(3):
+            i = faces[f, corner]
+            if stamps[i] == stamp:
+                continue
+            stamps[i] = stamp
+            x, y, z = _turned(r, vertices[i, 0], vertices[i, 1], vertices[i, 2])
+            points[i, 0], points[i, 1], points[i, 2] = x, y, z
+            points[i, 3] = level + elevation(waves, origin[0] + x, origin[1] + y, time) - (origin[2] + z)
+
+
+@njit(cache=True)
+def _walk(
+    vertices, first_vertex, last_vertex, faces, face_areas, start, end, first, last, skip, boxes, moments, origin, r, level,
+    waves, time, slack, stamp, points, stamps, leaves,
+):  # fmt: skip
+    """The same under the nodes from `start` up to `end`: triangles are visited at the surface alone.
+
+    Under a node that is wholly wet the depth is taken as d + g y + y H y / 2 about the middle of its
+    box, y = x - o, with the gradient g and the curvature H of the surface there: on still water
+    that is the depth itself. In waves the moments lack what is of third order in y, see `exact`.
+    """
+    v = p = area = 0.0
+    count = due = 0
+    # moments in the frame of the hull, and the integral of d^2 dA_z
+    lx = ly = lz = q = 0.0
+    curvature = 0.0
+    for w in range(waves.shape[0]):
+        curvature += abs(waves[w, 0]) * (waves[w, 1] ** 2 + waves[w, 2] ** 2)
+    i = start
+    while i < end:
+        cx, cy, cz = boxes[i, 0], boxes[i, 1], boxes[i, 2]
+        x, y, z = _turned(r, cx, cy, cz)
+        eta = ux = uy = h00 = h11 = h22 = h01 = h02 = h12 = 0.0
+        for w in range(waves.shape[0]):
+            kx, ky = waves[w, 1], waves[w, 2]
+            phase = kx * (origin[0] + x) + ky * (origin[1] + y) - waves[w, 3] * time + waves[w, 4]
+            crest, slope = waves[w, 0] * math.cos(phase), waves[w, 0] * math.sin(phase)
+            eta += crest
+            ux -= kx * slope
+            uy -= ky * slope
+            k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
+            h00 -= 0.5 * crest * k0 * k0
+            h11 -= 0.5 * crest * k1 * k1
+            h22 -= 0.5 * crest * k2 * k2
+            h01 -= crest * k0 * k1
+            h02 -= crest * k0 * k2
+            h12 -= crest * k1 * k2
+        d = level + eta - (origin[2] + z)
+        g0, g1, g2 = ux * r[0] + uy * r[3] - r[6], ux * r[1] + uy * r[4] - r[7], ux * r[2] + uy * r[5] - r[8]
+        ex, ey, ez = boxes[i, 3], boxes[i, 4], boxes[i, 5]
+        squared = ex * ex + ey * ey + ez * ez
+        bend = 0.5 * curvature * squared
+        reach = abs(g0) * ex + abs(g1) * ey + abs(g2) * ez + bend
+        if d <= -reach:
+            i = skip[i]
+            continue
+        if d >= reach and bend * math.sqrt(squared) <= slack:
+            m = moments[i]
+            # contracted with the vertical
+            s = _vertical(m, 0, r)
+            t0, t1, t2 = _vertical(m, 3, r), _vertical(m, 6, r), _vertical(m, 9, r)
+            u00, u11, u22 = _vertical(m, 12, r), _vertical(m, 15, r), _vertical(m, 18, r)
+            u01, u02, u12 = _vertical(m, 21, r), _vertical(m, 24, r), _vertical(m, 27, r)
+            bent = h00 * u00 + h11 * u11 + h22 * u22 + h01 * u01 + h02 * u02 + h12 * u12
+            tilted = g0 * t0 + g1 * t1 + g2 * t2
+            n0 = g0 * u00 + g1 * u01 + g2 * u02
+            n1 = g0 * u01 + g1 * u11 + g2 * u12
+            n2 = g0 * u02 + g1 * u12 + g2 * u22
+            part = d * s + tilted + bent
+            v -= part
+            lx -= cx * part + d * t0 + n0
+            ly -= cy * part + d * t1 + n1
+            lz -= cz * part + d * t2 + n2
+            q -= d * (d * s + 2.0 * (tilted + bent)) + g0 * n0 + g1 * n1 + g2 * n2
+            p -= s
+            area += m[30]
+        # down the tree, unless it ends here or all below is wet too and too large to answer
+        elif skip[i] > i + 1 and not (d >= reach and 0.5 * curvature * boxes[i, 6] > slack):
+            i += 1
+            continue
+        else:
+            leaves[count] = i
+            count += 1
+            due += last[i] - first[i]
+        i = skip[i]
+    mx, my, mz = _turned(r, lx, ly, lz)
+    mz += 0.5 * q
+    # where many triangles are due, all corners are placed in one go
+    total = last[start] - first[start]
+    if 4 * due > total:
+        _place(vertices, first_vertex, last_vertex, origin, r, level, waves, time, points)
+    for n in range(count):
+        i = leaves[n]
+        if 4 * due <= total:
+            _place_corners(vertices, faces, first[i], last[i], stamp, stamps, origin, r, level, waves, time, points)
+        some = _triangles(faces, face_areas, first[i], last[i], points)
+        v += some[0]
+        mx += some[1]
+        my += some[2]
+        mz += some[3]
+        p += some[4]
+        area += some[5]
+    return v, mx, my, mz, p, area
+
+
+@njit(cache=True, inline="always")
+def _vertical(m, k, r):
+    """Three numbers of a row of moments, along the world's vertical."""
+    return m[k] * r[6] + m[k + 1] * r[7] + m[k + 2] * r[8]
+
+
+@njit(cache=True)
 def submerge_hulls(
     vertices,  # (v, 3) of all hulls, in the frame of each
     vertex_starts,  # (h + 1,)
     faces,  # (f, 3) into vertices
     face_starts,  # (h + 1,)
     face_areas,  # (f,)
+    nodes,  # (h + 1,) first node of each
+    first,  # (n,) first, last, skip, boxes (n, 7) and moments (n, 31) of the nodes, see `tree`
+    last,
+    skip,
+    boxes,
+    moments,
+    slacks,  # (h,) see `exact.slack`
     whole,  # (h, 11) volume, centroid, area of each whole hull, middle and half sides of its bounding box
     frames,  # (h,) row of each hull in positions and rotations
     positions,  # (n, 3) of the frames in the world
@@ -84,7 +241,10 @@ def submerge_hulls(
     level,
     waves,  # (w, 6)
     time,
+    stamp,  # a number not given before
     points,  # (v, 4) scratch
+    stamps,  # (v,) of integers, likewise
+    leaves,  # (n,) likewise
     out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
 ):
     """The submersion of each hull; only hulls that the surface may cut cost more than a few operations."""
@@ -111,31 +271,15 @@ def submerge_hulls(
         out[h, 1:4] = math.nan
         if depth <= -reach:
             continue
-        # points (x, y, z) of the hull relative to its origin, turned as the world, and their depths
-        for i in range(vertex_starts[h], vertex_starts[h + 1]):
-            px, py, pz = _turned(r, vertices[i, 0], vertices[i, 1], vertices[i, 2])
-            points[i, 0], points[i, 1], points[i, 2] = px, py, pz
-            points[i, 3] = level + elevation(waves, origin[0] + px, origin[1] + py, time) - (origin[2] + pz)
-        v = mx = my = mz = p = area = 0.0
-        for f in range(face_starts[h], face_starts[h + 1]):
-            a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
-            d0, d1, d2 = points[a, 3], points[b, 3], points[c, 3]
-            if d0 <= 0.0 and d1 <= 0.0 and d2 <= 0.0:
-                continue
-            x0, y0, z0 = points[a, 0], points[a, 1], points[a, 2]
-            x1, y1, z1 = points[b, 0], points[b, 1], points[b, 2]
-            x2, y2, z2 = points[c, 0], points[c, 1], points[c, 2]
-            if d0 > 0.0 and d1 > 0.0 and d2 > 0.0:
-                part = _moments(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
-                area += face_areas[f]
-            else:
-                part, fraction = _cut(x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
-                area += fraction * face_areas[f]
-            v += part[0]
-            mx += part[1]
-            my += part[2]
-            mz += part[3]
-            p += part[4]
+        start, end = nodes[h], nodes[h + 1]
+        if end == start + 1:
+            _place(vertices, vertex_starts[h], vertex_starts[h + 1], origin, r, level, waves, time, points)
+            v, mx, my, mz, p, area = _triangles(faces, face_areas, face_starts[h], face_starts[h + 1], points)
+        else:
+            v, mx, my, mz, p, area = _walk(
+                vertices, vertex_starts[h], vertex_starts[h + 1], faces, face_areas, start, end, first, last, skip, boxes,
+                moments, origin, r, level, waves, time, slacks[h], stamp, points, stamps, leaves,
+            )  # fmt: skip
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of
         if v >= whole[h, 0]:
             out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], area, p

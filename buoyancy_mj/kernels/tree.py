@@ -1,0 +1,115 @@
+"""A tree over the triangles of a mesh, in whose nodes stand bounds and moments of the area under them.
+
+Nodes are in preorder: the first child of a node comes right behind it, and `skip` names the node
+behind all of its children, so that a walk needs no stack. A node holds the triangles from `first`
+up to `last` in the order of the tree; a leaf is a node whose `skip` comes next.
+
+The moments of the vector area dA about the middle o of the node's box, with y = x - o, are
+
+    int dA (3),  int y dA (3 x 3),  int y y dA (6 x 3, order xx yy zz xy xz yz),  int |dA| (1)
+
+exact on triangles, and from them follows the integral of any product of two linear functions.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+MOMENTS = 31
+"""Numbers in a row of moments: 3 + 9 + 18 + 1."""
+
+
+@njit(cache=True)
+def build(corners, leaf, order, first, last, skip):
+    """Sort triangles into a tree by halves along the widest side of their middles.
+
+    Args:
+        corners: of the triangles (n, 3, 3).
+        leaf: most triangles of a leaf.
+        order: (n,) of 0 .. n - 1; becomes the order of the tree.
+        first: of the nodes, written, as are last and skip (at least 4 n / leaf + 1 each).
+        last: likewise.
+        skip: likewise.
+
+    Returns:
+        The number of nodes.
+    """
+    n = corners.shape[0]
+    middles = np.empty((n, 3))
+    for i in range(n):
+        for k in range(3):
+            middles[i, k] = (corners[i, 0, k] + corners[i, 1, k] + corners[i, 2, k]) / 3.0
+    # ranges still to be done, the next on top
+    lows, highs = np.empty(128, np.int64), np.empty(128, np.int64)
+    lows[0], highs[0], top, count = 0, n, 1, 0
+    while top:
+        top -= 1
+        low, high = lows[top], highs[top]
+        first[count], last[count] = low, high
+        count += 1
+        if high - low <= leaf:
+            continue
+        part = order[low:high].copy()
+        axis, widest = 0, -1.0
+        for k in range(3):
+            width = middles[part, k].max() - middles[part, k].min()
+            if width > widest:
+                axis, widest = k, width
+        order[low:high] = part[np.argsort(middles[part, axis])]
+        half = (low + high) // 2
+        lows[top], highs[top] = half, high
+        lows[top + 1], highs[top + 1] = low, half
+        top += 2
+    # from the last node back, the nodes behind are known
+    for node in range(count - 1, -1, -1):
+        after = node + 1
+        while after < count and first[after] < last[node]:
+            after = skip[after]
+        skip[node] = after
+    return count
+
+
+@njit(cache=True)
+def measure(corners, first, last, skip, boxes, moments):
+    """Boxes (nodes, 7) and moments (nodes, 31) of triangles (n, 3, 3) in the order of the tree.
+
+    A box is its middle, its half sides, and the cube of the smallest half diagonal among it and the
+    boxes below.
+    """
+    moments[:, :] = 0.0
+    y = np.empty((3, 3))
+    total = np.empty(3)
+    area = np.empty(3)
+    for node in range(first.shape[0]):
+        for k in range(3):
+            low, high = math.inf, -math.inf
+            for i in range(first[node], last[node]):
+                for j in range(3):
+                    low, high = min(low, corners[i, j, k]), max(high, corners[i, j, k])
+            boxes[node, k], boxes[node, 3 + k] = 0.5 * (low + high), 0.5 * (high - low)
+        row = moments[node]
+        for i in range(first[node], last[node]):
+            for k in range(3):
+                for j in range(3):
+                    y[j, k] = corners[i, j, k] - boxes[node, k]
+                total[k] = y[0, k] + y[1, k] + y[2, k]
+            for k in range(3):
+                p, q = (k + 1) % 3, (k + 2) % 3
+                area[k] = 0.5 * ((y[1, p] - y[0, p]) * (y[2, q] - y[0, q]) - (y[1, q] - y[0, q]) * (y[2, p] - y[0, p]))
+            for k in range(3):
+                row[k] += area[k]
+                for a in range(3):
+                    row[3 + 3 * a + k] += total[a] / 3.0 * area[k]
+                for m in range(6):
+                    a, b = (m, m) if m < 3 else ((0, 1) if m == 3 else (0, 2) if m == 4 else (1, 2))
+                    mean = total[a] * total[b] + y[0, a] * y[0, b] + y[1, a] * y[1, b] + y[2, a] * y[2, b]
+                    row[12 + 3 * m + k] += mean / 12.0 * area[k]
+            row[30] += math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2)
+    for node in range(first.shape[0] - 1, -1, -1):
+        least = (boxes[node, 3] ** 2 + boxes[node, 4] ** 2 + boxes[node, 5] ** 2) ** 1.5
+        child = node + 1
+        while child < skip[node]:
+            least = min(least, boxes[child, 6])
+            child = skip[child]
+        boxes[node, 6] = least

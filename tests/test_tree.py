@@ -1,0 +1,183 @@
+"""The tree of moments: its structure, its moments, and that it finds what the plain way finds."""
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from buoyancy_mj import LevelOscillation, RegularWave, TriMesh, Water, exact, shapes, tree
+from buoyancy_mj.kernels import clip
+from tests import naive
+from tests.naive import trimesh_hull
+
+
+def subdivided(mesh, times):
+    v, f = mesh.vertices, mesh.faces
+    for _ in range(times):
+        v, f = trimesh.remesh.subdivide(v, f)
+    return TriMesh(v, f)
+
+
+BALL = trimesh_hull(trimesh.creation.icosphere(subdivisions=4, radius=0.5))
+MESHES = {
+    "ball": BALL,
+    "torus": trimesh_hull(trimesh.creation.torus(0.6, 0.2, major_sections=64, minor_sections=32)),
+    "hourglass": subdivided(naive.two_cones(0.5, 0.6, sections=64), 2),
+    "plate": subdivided(shapes.box((0.8, 0.6, 0.01)), 4),
+    "far from its frame": BALL.transformed(np.eye(3), (20.0, -30.0, 10.0)),
+    "two pieces": TriMesh(
+        np.vstack([BALL.vertices, BALL.vertices + 1.5]), np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)])
+    ),
+}
+BEAM = subdivided(shapes.box((4.0, 0.1, 0.1)), 6)
+WAVES = Water(waves=[RegularWave(0.1, wavelength=8.0), RegularWave(0.05, wavelength=5.0, direction=1.0, phase=0.4)])
+
+
+def packed(mesh, water, monkeypatch, *, few):
+    """A packed mesh, by a tree (few = 0) or by the plain way; refined alike."""
+    monkeypatch.setattr(tree, "FEW", few)
+    monkeypatch.setattr(tree, "FEW_IN_WAVES", few)
+    return exact.PackedHulls([mesh], [0], [0], water)
+
+
+@pytest.fixture
+def pair():
+    """Maker of the same hulls, plain and by a tree."""
+    with pytest.MonkeyPatch.context() as patch:
+        yield lambda mesh, water: [packed(mesh, water, patch, few=few) for few in (10**9, 0)]
+
+
+def place(mesh, seed, height):
+    """A random attitude, with the middle of the mesh at a height."""
+    turn = Rotation.random(random_state=seed).as_matrix()
+    position = np.array([0.3, -0.2, height]) - turn @ mesh.bounds.mean(axis=0)
+    return position[None], turn.reshape(1, 9)
+
+
+# structure ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_a_tree_holds_each_triangle_in_one_leaf_and_each_corner_in_its_boxes(name, monkeypatch):
+    mesh = MESHES[name]
+    hulls = packed(mesh, Water(), monkeypatch, few=0)
+    first, last, skip, faces = hulls._first, hulls._last, hulls._skip, hulls._faces
+    assert sorted(map(tuple, faces.tolist())) == sorted(map(tuple, mesh.faces.tolist()))
+    leaves = np.flatnonzero(skip == np.arange(len(skip)) + 1)
+    assert (last[leaves] - first[leaves] <= tree.LEAF).all()
+    assert first[leaves[0]] == 0
+    assert last[leaves[-1]] == len(faces)
+    np.testing.assert_array_equal(first[leaves[1:]], last[leaves[:-1]])
+    for node in range(len(first)):
+        corners = hulls._vertices[faces[first[node] : last[node]]].reshape(-1, 3)
+        off = np.abs(corners - hulls._boxes[node, :3]) - hulls._boxes[node, 3:6]
+        assert off.max() <= 1e-12
+        # the children of a node are what lies before the one that comes behind it
+        inside = np.arange(node + 1, skip[node])
+        assert ((first[inside] >= first[node]) & (last[inside] <= last[node])).all()
+
+
+def test_the_moments_are_the_integrals(monkeypatch):
+    hulls = packed(MESHES["torus"], Water(), monkeypatch, few=0)
+    # a rule of degree two: the middles of the edges
+    for node in (0, 1, len(hulls._first) // 2, len(hulls._first) - 1):
+        corners = hulls._vertices[hulls._faces[hulls._first[node] : hulls._last[node]]] - hulls._boxes[node, :3]
+        middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
+        vectors = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        weighed = np.repeat(vectors / 3.0, 3, axis=0)
+        y = middles.reshape(-1, 3)
+        found = hulls._moments[node]
+        assert found[:3] == pytest.approx(vectors.sum(axis=0), abs=1e-12)
+        assert found[3:12].reshape(3, 3) == pytest.approx(y.T @ weighed, abs=1e-12)
+        for row, (a, b) in zip(found[12:30].reshape(6, 3), ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)), strict=True):
+            assert row == pytest.approx((y[:, a] * y[:, b]) @ weighed, abs=1e-12)
+        assert found[30] == pytest.approx(np.linalg.norm(vectors, axis=1).sum(), rel=1e-12)
+
+
+# results --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("water", [Water(), Water(level=0.1, waves=LevelOscillation(0.2, 0.5))], ids=["still", "level"])
+@pytest.mark.parametrize("name", MESHES)
+def test_on_a_level_surface_the_tree_is_the_plain_way(name, water, pair):
+    mesh = MESHES[name]
+    plain, quick = pair(mesh, water)
+    assert len(quick._first) > 1 == len(plain._first)
+    for seed in range(20):
+        pose = place(mesh, seed, 0.1 * np.sin(seed))
+        a, b = plain.submerge(*pose, 0.3)[0], quick.submerge(*pose, 0.3)[0]
+        assert b[clip.VOLUME] == pytest.approx(a[clip.VOLUME], abs=1e-12 * mesh.volume)
+        if a[clip.VOLUME] > 1e-3 * mesh.volume:
+            assert b[clip.CENTROID] == pytest.approx(a[clip.CENTROID], abs=1e-10)
+        assert b[clip.WETTED_AREA] == pytest.approx(a[clip.WETTED_AREA], abs=1e-11 * mesh.area)
+        assert b[clip.WATERPLANE_AREA] == pytest.approx(a[clip.WATERPLANE_AREA], abs=1e-11 * mesh.area)
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_in_waves_it_stays_within_its_tolerance(name, pair, monkeypatch):
+    mesh = subdivided(MESHES[name], 1)
+    # small leaves, so that there are nodes small enough to answer
+    monkeypatch.setattr(tree, "LEAF_IN_WAVES", 4)
+    plain, quick = pair(mesh, WAVES)
+    worst = 0.0
+    for seed in range(20):
+        pose = place(mesh, seed, 0.15 * np.sin(seed) - 0.1)
+        a, b = plain.submerge(*pose, 0.1 * seed)[0], quick.submerge(*pose, 0.1 * seed)[0]
+        worst = max(worst, abs(b[0] - a[0]) / mesh.volume)
+        assert b[0] == pytest.approx(a[0], abs=tree.TREE_TOLERANCE * mesh.volume)
+        middle = pose[0][0] + pose[1].reshape(3, 3) @ mesh.bounds.mean(axis=0)
+        moments = [row[0] * (row[clip.CENTROID] - middle) for row in (a, b)]
+        assert moments[1] == pytest.approx(moments[0], abs=tree.TREE_TOLERANCE * mesh.volume * mesh.radius)
+        assert b[clip.WATERPLANE_AREA] == pytest.approx(a[clip.WATERPLANE_AREA], abs=1e-10)
+    # and it does answer from moments, else there were nothing to bound; thin and slender triangles take more of them
+    assert name in ("hourglass", "plate") or worst > 1e-10
+
+
+def test_a_long_body_in_short_waves_stays_within_it_too(pair, monkeypatch):
+    monkeypatch.setattr(tree, "LEAF_IN_WAVES", 4)
+    plain, quick = pair(BEAM, Water(waves=RegularWave(0.03, wavelength=1.5)))
+    turn = naive.roll(0.2)
+    for time in np.linspace(0.0, 1.0, 7):
+        a, b = (hulls.submerge(np.array([[0.0, 0.0, -0.05]]), turn.reshape(1, 9), time)[0] for hulls in (plain, quick))
+        assert b[0] == pytest.approx(a[0], abs=tree.TREE_TOLERANCE * BEAM.volume)
+        assert b[0] != a[0]
+        assert a[0] * a[1:4] == pytest.approx(b[0] * b[1:4], abs=tree.TREE_TOLERANCE * BEAM.volume * BEAM.radius)
+
+
+@given(st.integers(0, 10**6), st.floats(-0.7, 0.7), st.sampled_from([1e-3, 1e-4, 1e-6]))
+@settings(max_examples=40, deadline=None)
+def test_a_smaller_tolerance_is_kept_too(seed, height, tolerance):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tree, "TREE_TOLERANCE", tolerance)
+        patch.setattr(tree, "LEAF_IN_WAVES", 4)
+        mesh = MESHES["torus"]
+        plain, quick = (packed(mesh, WAVES, patch, few=few) for few in (10**9, 0))
+        pose = place(mesh, seed, height)
+        a, b = plain.submerge(*pose, 0.0)[0], quick.submerge(*pose, 0.0)[0]
+        assert b[0] == pytest.approx(a[0], abs=tolerance * mesh.volume)
+
+
+def test_several_hulls_share_one_structure_and_do_not_mix(pair):
+    meshes = [MESHES["ball"], shapes.box((0.1, 0.1, 0.1)), MESHES["torus"]]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tree, "FEW", 100)
+        together = exact.PackedHulls(meshes, [0, 1, 2], [0, 0, 0], Water())
+        positions = np.array([[0.0, 0.0, 0.1], [3.0, 0.0, 0.03], [-3.0, 1.0, -0.05]])
+        turns = Rotation.random(3, random_state=5).as_matrix().reshape(3, 9)
+        found = together.submerge(positions, turns, 0.0).copy()
+        for mesh, position, turn, row in zip(meshes, positions, turns, found, strict=True):
+            alone = exact.PackedHulls([mesh], [0], [0], Water()).submerge(position[None], turn[None], 0.0)[0]
+            np.testing.assert_array_equal(row, alone)
+
+
+def test_triangles_are_visited_at_the_waterline_alone(monkeypatch):
+    ball = trimesh_hull(trimesh.creation.icosphere(subdivisions=6))
+    hulls = packed(ball, Water(), monkeypatch, few=0)
+    hulls.submerge(*place(ball, 1, 0.2), 0.0)
+    visited = (hulls._stamps == hulls._stamp).mean()
+    assert 0.0 < visited < 0.1
+    for height in (-1.1, 1.1):
+        hulls.submerge(*place(ball, 1, height), 0.0)
+        assert not (hulls._stamps == hulls._stamp).any()
