@@ -2,6 +2,8 @@
 
 import csv
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -175,3 +177,11 @@ def test_the_committed_page_is_a_whole_one_with_all_its_figures():
     pictures = {f"{name}.png" for name, study in STUDIES.items() if study.draw}
     assert {path.name for path in PAGE.glob("*.png")} == pictures
     assert catalog.models()  # the vehicles that it names
+
+
+def test_without_matplotlib_the_mend_is_told(tmp_path):
+    code = "import sys; sys.modules['matplotlib'] = None; from buoyancy_mj.cli import app; app(['paper'])"
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "need matplotlib, which is not installed: pip install 'buoyancy_mj[paper]'" in done.stderr
+    assert "Traceback" not in done.stderr
