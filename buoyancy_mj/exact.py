@@ -88,14 +88,7 @@ class PackedHulls:
     def submerge(
         self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
     ) -> NDArray[np.float64]:
-        """Submersion of all hulls at a time [s], written to and returned as `results`.
-
-        Args:
-            positions: origins of the frames (n, 3) [m], world frame.
-            rotations: world_from_frame of the frames, row-major (n, 9).
-            time: [s].
-            run: whose step this is; nothing is carried from step to step.
-        """
+        """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         self._stamp += 1
         clip.submerge_hulls(
             self._vertices,
