@@ -13,6 +13,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import spatial
+from trimesh.geometry import faces_to_edges
 
 from buoyancy_mj.errors import MethodError, choices
 from buoyancy_mj.kernels import clip, slices
@@ -96,7 +97,9 @@ class PackedConvexHulls:
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
         self._vertices = [mesh.compact[0] for mesh in meshes]
-        self._edges = [_edges(mesh.compact[1]) for mesh in meshes] if method.cut else []
+        self._edges = []
+        if method.cut:
+            self._edges = [np.unique(np.sort(faces_to_edges(mesh.compact[1])), axis=0) for mesh in meshes]
         self._all = [np.arange(len(vertices)) for vertices in self._vertices]
         self._length = max(float(np.ptp(vertices, axis=0).max()) for vertices in self._vertices)
         self._runs: OrderedDict[int, _Run] = OrderedDict()
@@ -107,8 +110,8 @@ class PackedConvexHulls:
     def counts(self) -> Mapping[str, int]:
         """Work done so far.
 
-        `vertices` is the vertices of all meshes times the calls, `vertex_checks` how many
-        of them were compared with the surface, `sorts` how often an order was made, `hulls` how often
+        `vertices` is the vertices of all meshes times the calls, `vertex_checks` how many of them were
+        compared with the surface, `sorts` how often an order was made, `hulls` how often
         Quickhull ran and `hull_points` on how many points in all.
         """
         return dict(self._counts)
@@ -223,9 +226,3 @@ def hull_moments(points: NDArray[np.float64], centroid: str = "hull") -> tuple[f
     if not volume > 0.0:
         return nothing
     return volume, middle if centroid == "vertices" else middle + tetrahedra @ (a + b + c) / (4.0 * volume)
-
-
-def _edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Edges (e, 2) of faces, each once."""
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    return np.unique(edges, axis=0)

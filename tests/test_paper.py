@@ -1,6 +1,7 @@
 """The reproduction of the source paper: its bodies, a small version of all of it, and the page that is committed."""
 
 import csv
+import dataclasses
 import re
 import subprocess
 import sys
@@ -12,10 +13,10 @@ import trimesh
 from scipy.integrate import quad
 from typer.testing import CliRunner
 
-from buoyancy_mj import BuoyancyError, Exact, Sections, catalog
+from buoyancy_mj import BuoyancyError, Exact, Sections, Start, catalog
 from buoyancy_mj.cli import app
 from buoyancy_mj.geoms import displacing_hulls
-from buoyancy_mj.paper import motion, report, solids, statics
+from buoyancy_mj.paper import report, runs, solids, statics
 from buoyancy_mj.paper.studies import STUDIES
 
 ROOT = Path(__file__).parent.parent
@@ -111,20 +112,18 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
 
 def test_linear_damping_acts_on_velocity_relative_to_the_world():
     # a body far above the water falls as v = g / d (1 - exp(-d t)), whatever its mass
-    scene = motion._scene("hourglass_drop_still")
-    scene = motion.dataclasses.replace(
-        scene, start=motion.Start(position=(0, 0, 50.0)), duration=1.0, timestep=1e-3, drag=None
-    )
-    heights = np.array([m.height for m in motion.run(scene, Exact(), mass=3.0, rate=4.0)])
+    scene = runs.scene_of("hourglass_drop_still")
+    scene = dataclasses.replace(scene, start=Start(position=(0, 0, 50.0)), duration=1.0, timestep=1e-3, drag=None)
+    heights = np.array([m.height for m in runs.run(scene, Exact(), mass=3.0, rate=4.0)])
     times = 1e-3 * np.arange(len(heights))
     fall = 9.81 / 4.0 * (times - (1.0 - np.exp(-4.0 * times)) / 4.0)
     np.testing.assert_allclose(heights[0] - heights, fall, atol=3e-3)
 
 
 def test_a_run_s_draft_is_that_of_its_lowest_point():
-    scene = motion._scene("hourglass_drop_still")
-    scene = motion.dataclasses.replace(scene, start=motion.Start(position=(0, 0, 0.1)), duration=0.02)
-    first, *_ = motion.run(scene, Exact())
+    scene = runs.scene_of("hourglass_drop_still")
+    scene = dataclasses.replace(scene, start=Start(position=(0, 0, 0.1)), duration=0.02)
+    first, *_ = runs.run(scene, Exact())
     assert first.draft == pytest.approx(0.1, abs=1e-6)
     assert first.force == pytest.approx(9810.0 * float(solids.hourglass_volume(0.1, solids.SECTIONS)), rel=1e-5)
 

@@ -82,7 +82,9 @@ def family(name: str, level: int) -> tuple[TriMesh, ...]:
     if name == "catamaran":
         return (_subdivided(_catamaran(), level),)
     parts = tuple(_subdivided(mesh, level) for mesh in auv())
-    return parts if name == "AUV" else (_joined(parts),)
+    if name == "AUV":
+        return parts
+    return (TriMesh(*trimesh.util.append_faces([m.vertices for m in parts], [m.faces for m in parts])),)
 
 
 FAMILIES = {
@@ -128,13 +130,6 @@ def _subdivided(mesh: TriMesh, times: int) -> TriMesh:
     for _ in range(times):
         v, f = trimesh.remesh.subdivide(v, f)
     return TriMesh(v, f)
-
-
-def _joined(meshes: Sequence[TriMesh]) -> TriMesh:
-    """Several meshes as one of several pieces."""
-    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-    faces = [mesh.faces + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
-    return TriMesh(np.vstack([mesh.vertices for mesh in meshes]), np.vstack(faces))
 
 
 def _tri_mesh(solid: trimesh.Trimesh) -> TriMesh:

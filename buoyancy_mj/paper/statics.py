@@ -203,8 +203,11 @@ def _worst(a: NDArray[np.float64], b: NDArray[np.float64], where: NDArray[np.boo
 def _floating(meshes: tuple[TriMesh, ...], wanted: float) -> float:
     """Height of the frame [m] at which meshes, upright, displace a volume [m^3]."""
     z = np.concatenate([mesh.vertices[:, 2] for mesh in meshes])
-    height = lambda h: solids.wet_volume(meshes, np.array([0.0, 0.0, h]), UPRIGHT) - wanted  # noqa: E731
-    return float(brentq(height, -z.max(), -z.min(), xtol=1e-10))
+
+    def excess(height: float) -> float:
+        return solids.wet_volume(meshes, np.array([0.0, 0.0, height]), UPRIGHT) - wanted
+
+    return float(brentq(excess, -z.max(), -z.min(), xtol=1e-10))
 
 
 def _parts() -> dict[str, list[TriMesh]]:
