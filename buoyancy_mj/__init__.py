@@ -6,6 +6,7 @@ from buoyancy_mj.drag import Drag as Drag
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
 from buoyancy_mj.errors import DivergenceError as DivergenceError
+from buoyancy_mj.errors import EngineError as EngineError
 from buoyancy_mj.errors import MeshError as MeshError
 from buoyancy_mj.errors import MethodError as MethodError
 from buoyancy_mj.errors import ModelError as ModelError
@@ -19,6 +20,8 @@ from buoyancy_mj.loads import Loads as Loads
 from buoyancy_mj.loads import Portion as Portion
 from buoyancy_mj.mending import mended as mended
 from buoyancy_mj.mesh import TriMesh as TriMesh
+from buoyancy_mj.plugin import add_water as add_water
+from buoyancy_mj.plugin import water_in as water_in
 from buoyancy_mj.scene import Scene as Scene
 from buoyancy_mj.scene import Start as Start
 from buoyancy_mj.scene import read_scene as read_scene

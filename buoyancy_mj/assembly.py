@@ -1,5 +1,6 @@
 """A vehicle and an environment, joined into one MuJoCo model."""
 
+import contextlib
 import dataclasses
 import warnings
 from pathlib import Path
@@ -9,7 +10,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import catalog
-from buoyancy_mj.errors import BuoyancyWarning, ModelError, SceneError, choices
+from buoyancy_mj.callbacks import PLUGIN, skips_passive
+from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, EngineError, ModelError, SceneError, choices
+from buoyancy_mj.native import raised
+from buoyancy_mj.plugin import add_water
 from buoyancy_mj.scene import INTEGRATORS, Scene, Start
 
 ENVIRONMENT = "environment/"
@@ -17,15 +21,17 @@ ENVIRONMENT = "environment/"
 _FREE = mujoco.mjtJoint.mjJNT_FREE
 
 
-def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
+def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
     """The model of a scene, its data at the start, and how many of its bodies, from the first, are world and vehicle.
 
     The vehicle's file is the base: its options, names, keyframes and custom elements stay. Its body
     gets a free joint if it has none, and the environment is attached to the world under the prefix
-    'environment/'.
+    'environment/'. With `afloat` the scene's water is part of the model, unless MuJoCo would skip it
+    there (see `callbacks.skips_passive`); water that the vehicle's file brings gives way to the scene's.
 
     Raises:
-        ModelError: a file is missing, MuJoCo refuses it, or it has no body that could float.
+        ModelError: a file is missing, MuJoCo refuses it, or it has no body that could float; afloat,
+            also what `Buoyancy` raises.
         SceneError: the start names a keyframe that does not exist.
     """
     path = catalog.model_path(scene.vehicle, scene.folder)
@@ -42,6 +48,11 @@ def assembled(scene: Scene) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
+    _leave_out_own_water(spec)
+    if afloat and not skips_passive(spec.option.disableflags):
+        # where the plugin cannot be, that was told on import
+        with contextlib.suppress(EngineError):
+            add_water(spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms)
     model = _compiled(spec, path)
     data = mujoco.MjData(model)
     _place(model, data, scene.start, bodies)
@@ -94,10 +105,26 @@ def _leave_out_dry_land(spec: mujoco.MjSpec, path: Path, level: float) -> None:
             spec.delete(plane)
 
 
+def _leave_out_own_water(spec: mujoco.MjSpec) -> None:
+    """Remove the water that the model brings: the scene's takes its place."""
+    own = [plugin for plugin in spec.plugins if plugin.plugin_name == PLUGIN]
+    for body in spec.bodies:
+        if body.plugin.plugin_name == PLUGIN or body.plugin.name in [plugin.name for plugin in own]:
+            body.plugin.active = False
+    for plugin in own:
+        warnings.warn(f"the water '{plugin.name}' of the model gives way to the scene's", BuoyancyWarning, stacklevel=4)
+        spec.delete(plugin)
+
+
 def _compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
+    raised()
     try:
         return spec.compile()
     except ValueError as error:
+        # what the water refuses comes through MuJoCo as a text
+        refused = raised()
+        if isinstance(refused, BuoyancyError):
+            raise refused from None
         raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
 
 

@@ -1,25 +1,27 @@
 """`Buoyancy`: water acting on the bodies of one MuJoCo model."""
 
 import contextlib
+import functools
 import threading
-from collections.abc import Callable, Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj import callbacks
 from buoyancy_mj.drag import Drag, estimated
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import EngineError, ModelError
 from buoyancy_mj.geoms import displacing_hulls
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.loads import Loads, Portion
 from buoyancy_mj.methods import Method, method_of
+from buoyancy_mj.native import Native, Record
 from buoyancy_mj.water import Water
 
 
 class Buoyancy:
-    """Archimedes' force on every hull of a model, and drag on its bodies, as an `mjcb_control`.
+    """Archimedes' force on every hull of a model, and drag on its bodies, as a callback of MuJoCo.
 
     The force rho g V acts upward at the centroid of each hull's submerged volume. It enters through
     `data.qfrc_passive`, which MuJoCo computes anew before each call, with its own fluid forces; so
@@ -33,13 +35,14 @@ class Buoyancy:
         model: any MuJoCo model with bodies that move.
         water: fresh and still at z = 0 if None.
         geoms: which geoms displace water, see `geoms.displacing_hulls`.
+        bodies: indices of the bodies whose geoms may; None for all.
         drag: how damping is estimated; None for none.
         method: how the submersion is found: "exact", or the source paper's "convex_hull" and
             "sections", or one of `Exact`, `ConvexHull`, `Sections` with options.
 
     Raises:
-        ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips the
-            callback), sleep enabled, no geom that displaces water, a body without mass.
+        ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips an
+            `mjcb_control`), sleep enabled, no geom that displaces water, a body without mass.
         MeshError: a mesh that bounds no volume.
         MethodError: there is no such method.
     """
@@ -50,6 +53,7 @@ class Buoyancy:
         water: Water | None = None,
         *,
         geoms: str | Sequence[str] | None = None,
+        bodies: Sequence[int] | None = None,
         drag: Drag | None = Drag(),
         method: str | Method = "exact",
     ) -> None:
@@ -57,87 +61,117 @@ class Buoyancy:
         self.water = water or Water()
         self.drag = drag
         self.method = method_of(method)
-        _refuse_options(model)
+        callbacks.refuse_actuation(model)
+        _refuse_sleep(model)
         _ = self.gravity
-        self.hulls = displacing_hulls(model, geoms)
+        self.hulls = displacing_hulls(model, geoms, bodies)
         """The hulls, in the order of the model's geoms."""
-        self._hull_bodies = np.array([hull.body for hull in self.hulls])
+        self._owners = np.array([hull.body for hull in self.hulls])
         frames = [hull.geom for hull in self.hulls]
         turns = [hull.body_from_geom for hull in self.hulls]
-        self.packed = self.method.packed([hull.mesh for hull in self.hulls], frames, self._hull_bodies, self.water, turns)
+        self.packed = self.method.packed([hull.mesh for hull in self.hulls], frames, self._owners, self.water, turns)
         self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
-        self.bodies = np.array(sorted({hull.body for hull in self.hulls}))
+        self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
         roots = set(model.body_rootid[self.bodies].tolist())
         self.floating = np.array([body for body in range(model.nbody) if model.body_rootid[body] in roots])
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
         self._rows, self._current = self.water.rows, np.array(self.water.current)
-        # what a step writes to
-        self._centres = np.zeros((model.nbody, 4))
-        self._causes = {cause: np.zeros((model.nbody, 6)) for cause in ("buoyancy", *(["drag"] if drag else []))}
-        self._sum = np.zeros((model.nbody, 6))
-        self._targets = [(int(body), self._sum[body, :3], self._sum[body, 3:]) for body in self.bodies]
+        self.causes = ("buoyancy", "drag") if drag else ("buoyancy",)
+        """Names of the loads that act."""
+        # what a step writes to; threads that share this object take turns
+        self._looked, self._record = self.record(), self.record()
         self._before, self._after = np.zeros((2, model.nv))
         self._last_data = 0
-        # one set of arrays: threads that share this object take turns
         self._lock = threading.RLock()
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Add the water's forces to `data.qfrc_passive`: an `mjcb_control`, or a call between mj_step1 and mj_step2.
 
-        Another model than the own one is left alone. A second call in the same pass replaces the first.
+        Another model than the own one is left alone, and so are all while the water is `installed`.
+        A second call in the same pass replaces the first.
         """
-        if model._address != self.model._address:
-            return
-        with self._lock:
-            self._apply(data)
-
-    def _apply(self, data: mujoco.MjData) -> None:
-        """Compute the loads and add them to `data.qfrc_passive`."""
-        self._compute(data, data._address)
-        passive = data.qfrc_passive
-        # finite differences call the callback again without computing qfrc_passive anew
-        if data._address == self._last_data and np.array_equal(passive, self._after):
-            passive[:] = self._before
-        self._before[:] = passive
-        for body, force, torque in self._targets:
-            mujoco.mj_applyFT(self.model, data, force, torque, data.xipos[body], body, passive)
-        self._after[:] = passive
-        self._last_data = data._address
+        if model._address == self.model._address and not callbacks.acts(self):
+            self.act(data)
 
     @contextlib.contextmanager
-    def installed(self) -> Iterator["Buoyancy"]:
-        """Lend itself to MuJoCo as `mjcb_control`; the callback that was there still runs, and comes back at the end.
+    def installed(self, native: bool | None = None, *, copies: bool = False) -> Iterator["Buoyancy"]:
+        """Lend itself to MuJoCo; the callback that was there still runs, and comes back at the end.
+
+        It is lent as `mjcb_passive`, which MuJoCo calls once in each pass, in `mj_inverse` and for
+        finite differences too; or, since MuJoCo skips that one where a model disables springs and
+        dampers, as `mjcb_control`. Installed again while it acts, it changes nothing.
+
+        Args:
+            native: as a compiled C function, which needs no Python and takes no lock, so that threads
+                step side by side and `mujoco.batch` accepts it. None does so where it can be: not
+                beside a callback in Python, and not as `mjcb_control`.
+            copies: act on other models of the same compilation signature too, as `mujoco.batch` makes
+                of its model; compiled only.
 
         Raises:
-            ModelError: actuation has been disabled: MuJoCo would skip the callback.
+            ModelError: actuation has been disabled.
+            EngineError: `native` or `copies` is asked for and cannot be; the message says why.
         """
-        _refuse_options(self.model)
-        previous = mujoco.get_mjcb_control()
-        chained = _callable(previous)
-
-        def control(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-            if chained is not None:
-                chained(model, data)
-            self(model, data)
-
-        mujoco.set_mjcb_control(self if chained is None else control)
-        try:
+        with callbacks.lent(self, native, copies=copies):
             yield self
-        finally:
-            mujoco.set_mjcb_control(previous)
+
+    def act(self, data: mujoco.MjData) -> None:
+        """Add the forces to `data.qfrc_passive`, once in each pass."""
+        with self._lock:
+            record = self._record
+            self._compute(data, data._address, record)
+            passive, model = data.qfrc_passive, self.model
+            # finite differences call a control callback again without computing qfrc_passive anew
+            if data._address == self._last_data and np.array_equal(passive, self._after):
+                passive[:] = self._before
+            self._before[:] = passive
+            wrenches.project(
+                record.total,
+                self.bodies,
+                data.xipos,
+                data.subtree_com,
+                model.body_rootid,
+                model.body_parentid,
+                model.body_dofnum,
+                model.body_dofadr,
+                model.dof_parentid,
+                data.cdof,
+                passive,
+            )
+            self._after[:] = passive
+            self._last_data = data._address
+            if "native" in self.__dict__:
+                self.native.forget(data._address)
 
     def evaluate(self, data: mujoco.MjData) -> Loads:
         """The loads at the poses and velocities that `data` holds, as mj_forward left them; writes nothing."""
         with self._lock:
             # as a run of its own, so that what the callback carries from step to step stays untouched
-            self._compute(data, -data._address)
-            wet, centres, rows = self.packed.results.copy(), self._centres.copy(), self._sum.copy()
-            causes = {cause: wrench.copy() for cause, wrench in self._causes.items()}
+            self._compute(data, -data._address, self._looked)
+            return self.loads_of(self._looked, data)
+
+    def loads(self, data: mujoco.MjData) -> Loads:
+        """The loads that acted in the last pass of a step or of mj_forward over `data`, with the poses of that pass.
+
+        Raises:
+            EngineError: none acted on these data so far, or many others were stepped since.
+        """
+        with self._lock:
+            record = self.native.last_record(data._address) if "native" in self.__dict__ else None
+            if record is None and self._last_data == data._address:
+                record = self._record
+            if record is None:
+                raise EngineError("this water has not acted on these data; step them while it is installed, or use evaluate")
+            return self.loads_of(record, data)
+
+    def loads_of(self, record: Record, data: mujoco.MjData) -> Loads:
+        """What a record holds, as copies; its `data` still hold the poses."""
+        wet, centres, rows = record.results.copy(), record.centres.copy(), record.total.copy()
         xipos = data.xipos
         force = np.zeros((len(self.hulls), 3))
         force[:, 2] = self.water.density * self.gravity * wet[:, clip.VOLUME]
-        arm = np.where(force[:, 2:] > 0.0, wet[:, clip.CENTROID] - xipos[self._hull_bodies], 0.0)
+        arm = np.where(force[:, 2:] > 0.0, wet[:, clip.CENTROID] - xipos[self._owners], 0.0)
         hull = Portion(wet[:, clip.VOLUME], wet[:, clip.CENTROID], force, np.cross(arm, force))
         body = Portion(centres[:, 0], centres[:, 1:], rows[:, :3], rows[:, 3:])
         everything = np.empty((1, 4))
@@ -151,52 +185,63 @@ class Buoyancy:
             total=total,
             wetted_area=wet[:, clip.WETTED_AREA],
             waterplane_area=wet[:, clip.WATERPLANE_AREA],
-            by_cause=causes,
+            by_cause={cause: wrench.copy() for cause, wrench in record.causes.items()},
         )
 
-    @property
-    def causes(self) -> tuple[str, ...]:
-        """Names of the loads that act."""
-        return tuple(self._causes)
+    def record(self) -> Record:
+        """Room for what one evaluation leaves."""
+        return Record(len(self.hulls), self.model.nbody, self.causes)
+
+    @functools.cached_property
+    def native(self) -> Native:
+        """What compiled code needs of this water.
+
+        Raises:
+            EngineError: this MuJoCo is not as expected inside.
+        """
+        return Native(self.model, self.water, self.packed, self._owners, self._damping, self.causes, self._lock)
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the floating bodies, world frame."""
         masses = self.model.body_mass[self.floating]
         return masses @ data.xipos[self.floating] / masses.sum()
 
-    def _compute(self, data: mujoco.MjData, run: int) -> None:
-        """Submersion, then each cause, then their sum, into the arrays made at construction."""
-        weight = self.water.density * self.gravity
-        wet = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
-        wrenches.merge(wet, self._hull_bodies, self._centres)
-        buoyancy = self._causes["buoyancy"]
+    def _compute(self, data: mujoco.MjData, run: int, record: Record) -> None:
+        """Submersion, then each cause, then their sum, into a record."""
+        model = self.model
+        record.results[:] = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
+        wrenches.merge(record.results, self._owners, record.centres)
+        buoyancy = record.causes["buoyancy"]
         buoyancy[:] = 0.0
-        wrenches.add_buoyancy(wet, self._hull_bodies, weight, data.xipos, buoyancy)
-        self._sum[:] = buoyancy
+        wrenches.add_buoyancy(record.results, self._owners, self.water.density * self.gravity, data.xipos, buoyancy)
+        record.total[:] = buoyancy
         if self._damping is not None:
-            drag, damping = self._causes["drag"], self._damping
+            drag, damping = record.causes["drag"], self._damping
             drag[:] = 0.0
             wrenches.add_drag(
-                self._centres,
+                record.centres,
                 damping.bodies,
                 damping.volumes,
                 damping.linear,
                 damping.quadratic,
-                damping.masses,
-                damping.inertias,
+                damping.members,
+                damping.member_starts,
+                model.body_mass,
+                model.body_inertia,
                 data.xipos,
+                data.ximat,
                 data.xmat,
                 data.cvel,
                 data.subtree_com,
-                self.model.body_rootid,
+                model.body_rootid,
                 self.water.level,
                 self._rows,
                 self._current,
                 data.time,
-                self.model.opt.timestep,
+                model.opt.timestep,
                 drag,
             )
-            self._sum += drag
+            record.total += drag
 
     @property
     def gravity(self) -> float:
@@ -213,22 +258,10 @@ class Buoyancy:
         return -float(z)
 
 
-def _refuse_options(model: mujoco.MjModel) -> None:
-    """Refuse options under which everything would sink, or stay where it is, without a word."""
-    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
-        raise ModelError(
-            "this model disables actuation, and MuJoCo then skips the control callback through which water acts: "
-            "remove <flag actuation='disable'/>, and disable single actuators by <option actuatorgroupdisable> instead"
-        )
+def _refuse_sleep(model: mujoco.MjModel) -> None:
+    """Refuse bodies that would stay where they are while the water moves."""
     if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP:
         raise ModelError(
             "this model lets bodies at rest sleep, and MuJoCo does not wake them for water that moves: "
             "remove <flag sleep='enable'/>"
         )
-
-
-def _callable(callback: Any) -> Callable[[mujoco.MjModel, mujoco.MjData], None] | None:
-    """A callback as get_mjcb_control gives it, a Python function or a ctypes one, to be called from Python."""
-    if hasattr(callback, "argtypes"):
-        return lambda model, data: callback(model._address, data._address)
-    return callback

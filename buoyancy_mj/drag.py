@@ -27,8 +27,8 @@ class Drag:
     cylinder across the flow; Hoerner, Fluid-Dynamic Drag (1965), ch. 3, measured 1.05, 0.47 and,
     with a length of one to five diameters, 0.64 to 0.74 (table 7.3 of White, Fluid Mechanics, 8th ed.).
 
-    Turning about an axis, each strip of the two other silhouettes meets the flow at its own speed
-    (cross-flow principle): the torque is 1/2 rho C int |r|^3 dA |w| w.
+    Turning about an axis through the centroid of its volume, each strip of the two other silhouettes
+    meets the flow at its own speed (cross-flow principle): the torque is 1/2 rho C int |r|^3 dA |w| w.
 
     The linear part equals the quadratic one at a low speed, `linear_froude` sqrt(g L), with L the
     longest side of the body. In the measured coefficients of the BlueROV2 Heavy (von Benzon et al.
@@ -65,61 +65,41 @@ class Damping:
     """Force [N s/m] and torque [N m s] per velocity (n, 6), when fully wet."""
     quadratic: NDArray[np.float64]
     """Force [N s^2/m^2] and torque [N m s^2] per velocity squared (n, 6), when fully wet."""
-    masses: NDArray[np.float64]
-    """Mass of each body (n,) [kg]."""
-    inertias: NDArray[np.float64]
-    """What the body opposes to a torque about each of its axes (n, 3) [kg m^2]."""
+    members: NDArray[np.int64]
+    """Indices of those bodies and of what is welded to each, one body after the other (m,)."""
+    member_starts: NDArray[np.int64]
+    """Where those of each begin (n + 1,)."""
 
 
 def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density: float) -> Damping:
     """The damping that `drag` estimates for the bodies of `hulls` in water of a density [kg/m^3]."""
     gravity = float(np.linalg.norm(model.opt.gravity))
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
     bodies = sorted({hull.body for hull in hulls})
-    masses, volumes = np.zeros((2, len(bodies)))
-    inertias = np.zeros((len(bodies), 3))
+    volumes = np.zeros(len(bodies))
     linear, quadratic = np.zeros((2, len(bodies), 6))
+    members = [np.flatnonzero(model.body_weldid == body) for body in bodies]
     for row, body in enumerate(bodies):
+        mass = float(model.body_mass[members[row]].sum())
+        if not mass > 0.0:
+            raise ModelError(
+                f"body '{body_name(model, body)}' displaces water and has a mass of {mass:g} kg; give it a mass, "
+                "or leave its geoms out (--geoms)"
+            )
         meshes = [hull.mesh_in_body for hull in hulls if hull.body == body]
-        volumes[row] = sum(mesh.volume for mesh in meshes)
-        masses[row], centre, inertias[row] = _rigid_body(model, data, body)
+        whole = np.array([mesh.volume for mesh in meshes])
+        volumes[row] = whole.sum()
+        centre = whole @ [mesh.centroid for mesh in meshes] / volumes[row]
         quadratic[row], length = _quadratic(0.5 * density * drag.coefficient, meshes, centre)
         slow = drag.linear_froude * math.sqrt(gravity * length)
         linear[row] = quadratic[row] * np.repeat([slow, slow / (0.5 * length)], 3)
-    return Damping(np.array(bodies), volumes, linear, quadratic, masses, inertias)
-
-
-def _rigid_body(
-    model: mujoco.MjModel, data: mujoco.MjData, body: int
-) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
-    """Mass [kg], centre of mass (3,) [m] and apparent inertia (3,) [kg m^2] in the body's frame.
-
-    Bodies without joints move with their parent and count here. The apparent inertia is torque over
-    angular acceleration about each axis.
-    """
-    members = np.flatnonzero(model.body_weldid == body)
-    masses = model.body_mass[members]
-    mass = float(masses.sum())
-    if not mass > 0.0:
-        raise ModelError(
-            f"body '{body_name(model, body)}' displaces water and has a mass of {mass:g} kg; give it a mass, "
-            "or leave its geoms out (--geoms)"
-        )
-    centre = masses @ data.xipos[members] / mass
-    inertia = np.zeros((3, 3))
-    for member, m in zip(members, masses, strict=True):
-        turn, arm = data.ximat[member].reshape(3, 3), data.xipos[member] - centre
-        inertia += turn * model.body_inertia[member] @ turn.T + m * (arm @ arm * np.eye(3) - np.outer(arm, arm))
-    world_from_body = data.xmat[body].reshape(3, 3)
-    inverse = world_from_body.T @ np.linalg.pinv(inertia) @ world_from_body
-    return mass, world_from_body.T @ (centre - data.xpos[body]), 1.0 / np.maximum(np.diag(inverse), 1e-300)
+    starts = np.cumsum([0, *(len(group) for group in members)])
+    return Damping(np.array(bodies), volumes, linear, quadratic, np.concatenate(members).astype(np.int64), starts)
 
 
 def _quadratic(
     resistance: float, meshes: Sequence[TriMesh], centre: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], float]:
-    """Quadratic damping (6,) of one body about its centre of mass, and its longest side [m].
+    """Quadratic damping (6,) of one body about a centre, and its longest side [m].
 
     `resistance` [kg/m^3] is force per area and velocity squared of a face across the flow.
     """

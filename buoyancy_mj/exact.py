@@ -2,7 +2,7 @@
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -79,6 +79,17 @@ class PackedHulls:
         self._points = np.empty((len(self._vertices), 4))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
+
+    ARRAYS = (
+        "vertices", "vertex_starts", "faces", "face_starts", "face_areas", "nodes", "first", "last", "skip", "boxes",
+        "moments", "slacks", "whole", "frames",
+    )  # fmt: skip
+    """What describes the hulls, see `kernels.clip.submerge_hulls`."""
+
+    @property
+    def arrays(self) -> Mapping[str, NDArray[Any]]:
+        """The arrays of `ARRAYS`, for compiled code to submerge the hulls without Python."""
+        return {name: getattr(self, "frames" if name == "frames" else f"_{name}") for name in self.ARRAYS}
 
     @property
     def counts(self) -> Mapping[str, int]:

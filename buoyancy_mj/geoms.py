@@ -50,13 +50,17 @@ class Hull:
         return self.mesh.transformed(self.body_from_geom, self.position)
 
 
-def displacing_hulls(model: mujoco.MjModel, geoms: str | Sequence[str] | None = None) -> tuple[Hull, ...]:
+def displacing_hulls(
+    model: mujoco.MjModel, geoms: str | Sequence[str] | None = None, bodies: Sequence[int] | None = None
+) -> tuple[Hull, ...]:
     """The hulls of a model.
 
     Of each moving body the collision geoms (contype or conaffinity not zero) displace water if it
     has any, otherwise its visual ones. `geoms`, or a text named 'buoyancy_geoms' in the model's
     `<custom>`, chooses otherwise: name globs, or `group:N`, separated by blanks or commas. Planes,
     height fields, signed distance fields and what cannot move never displace water.
+
+    With `bodies` only geoms of those count.
 
     What was mended in a mesh, and volumes that overlap inside a body, are told as `BuoyancyWarning`.
 
@@ -65,6 +69,8 @@ def displacing_hulls(model: mujoco.MjModel, geoms: str | Sequence[str] | None = 
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
     solid = [g for g in range(model.ngeom) if model.geom_type[g] in _SOLIDS and model.body_weldid[model.geom_bodyid[g]]]
+    if bodies is not None:
+        solid = [g for g in solid if model.geom_bodyid[g] in bodies]
     chosen = _chosen(model, solid, _patterns(model, geoms))
     if not chosen:
         raise ModelError(

@@ -12,12 +12,12 @@ import mujoco
 from buoyancy_mj.drag import Drag
 from buoyancy_mj.errors import SceneError, choices
 from buoyancy_mj.exact import Exact
-from buoyancy_mj.methods import METHODS, Method
+from buoyancy_mj.methods import Method
+from buoyancy_mj.settings import drag_from_table, method_from_table, plain_value, water_from_table
+from buoyancy_mj.settings import table as table_of
 from buoyancy_mj.tables import built
-from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
+from buoyancy_mj.water import Water
 
-WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
-"""Kinds of waves in a scene file."""
 INTEGRATORS = {
     name.lower(): value
     for name, value in ((key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items())
@@ -122,14 +122,10 @@ def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str =
     """The scene that a table of plain values describes, see `read_scene`."""
     plain = dict(table)
     given: dict[str, Any] = {"text": text, "folder": folder}
-    given["water"] = _water(_table(plain.pop("water", {}), f"{where}: water"), f"{where}: water")
-    given["start"] = built(Start, _table(plain.pop("start", {}), f"{where}: start"), f"{where}: start")
-    drag = plain.pop("drag", True)
-    if isinstance(drag, bool):
-        given["drag"] = Drag() if drag else None
-    else:
-        given["drag"] = built(Drag, _table(drag, f"{where}: drag"), f"{where}: drag")
-    given["method"] = _method(plain.pop("method", "exact"), f"{where}: method")
+    given["water"] = water_from_table(plain.pop("water", {}), f"{where}: water")
+    given["start"] = built(Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start")
+    given["drag"] = drag_from_table(plain.pop("drag", True), f"{where}: drag")
+    given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
     # keys of the scene that are tables of their own are still its keys
     for key in plain:
         known = [field.name for field in dataclasses.fields(Scene) if field.name not in ("text", "folder")]
@@ -138,48 +134,12 @@ def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str =
     return built(Scene, plain, where, **given)
 
 
-def _water(table: Mapping[str, Any], where: str) -> Water:
-    plain = dict(table)
-    entries = plain.pop("waves", [])
-    if not isinstance(entries, list):
-        raise SceneError(f"{where}: waves is {entries!r}; needed is a list of tables [[water.waves]]")
-    waves: list[Wave] = []
-    for i, entry in enumerate(entries):
-        place = f"{where}.waves.{i}"
-        wave = dict(_table(entry, place))
-        kind = wave.pop("kind", "regular")
-        if not isinstance(kind, str) or kind not in WAVES:
-            raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
-        waves.append(built(WAVES[kind], wave, place))
-    return built(Water, plain, where, waves=tuple(waves))
-
-
-def _method(value: Any, where: str) -> Method:
-    """A method by its name, or a table of its `kind` and its options."""
-    plain = {"kind": value} if isinstance(value, str) else dict(_table(value, where))
-    if "kind" not in plain:
-        raise SceneError(f"{where}: 'kind' is missing; needed is one of {', '.join(METHODS)}")
-    kind = plain.pop("kind")
-    if not isinstance(kind, str) or kind not in METHODS:
-        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), METHODS)}")
-    return built(METHODS[kind], plain, where)
-
-
-def _table(value: Any, where: str) -> Mapping[str, Any]:
-    if not isinstance(value, dict):
-        raise SceneError(f"{where} is {value!r}; needed is a table")
-    return value
-
-
 def _set(table: dict[str, Any], setting: str) -> None:
     """Lay one KEY=VALUE over a table; VALUE is TOML, or a bare word."""
     key, equals, text = setting.partition("=")
     if not equals or not key.strip():
         raise SceneError(f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2")
-    try:
-        value: Any = tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
-        value = text.strip()
+    value = plain_value(text)
     place: Any = table
     *path, last = key.strip().split(".")
     for depth, part in enumerate(path):

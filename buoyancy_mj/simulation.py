@@ -3,7 +3,8 @@
 import math
 import time
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 import mujoco
 import numpy as np
@@ -12,9 +13,11 @@ from scipy.spatial import ConvexHull
 
 from buoyancy_mj.assembly import assembled
 from buoyancy_mj.buoyancy import Buoyancy
+from buoyancy_mj.callbacks import plugin_instances
 from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
 from buoyancy_mj.frames import LAST, Energy, Frame, Summary
 from buoyancy_mj.geoms import Hull, body_name
+from buoyancy_mj.plugin import water_in
 from buoyancy_mj.scene import Scene
 
 PLAUSIBLE = 1e-4, 1e4
@@ -31,11 +34,18 @@ class Simulation:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.model, self.data, bodies = assembled(scene)
+        self.model, self.data, bodies = assembled(scene, afloat=True)
         # a diverging simulation is told, not set back to the start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-        self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag, method=scene.method)
+        self.buoyancy: Buoyancy
+        """The water that acts."""
+        self._acting: Callable[[], AbstractContextManager[object]]
+        if plugin_instances(self.model):
+            self.buoyancy, self._acting = water_in(self.model), nullcontext
+        else:
+            self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag, method=scene.method)
+            self._acting = self.buoyancy.installed
         floating = self.buoyancy.floating
         self.vehicle = floating[floating < bodies]
         """Indices of the vehicle's bodies; what floats in the environment is none of them."""
@@ -64,7 +74,6 @@ class Simulation:
         self._first_contact: float | None = None
         # compiles what a fresh installation has not compiled, before the clock runs
         mujoco.mj_forward(self.model, self._shown)
-        self.buoyancy.evaluate(self._shown)
         scene.water.elevation(0.0, 0.0, 0.0)
         fixed = self.model.body_weldid[self.model.geom_bodyid] == 0
         own = np.isin(self.model.geom_bodyid, self.vehicle)
@@ -102,7 +111,7 @@ class Simulation:
         Raises:
             DivergenceError: see `frames`.
         """
-        with self.buoyancy.installed():
+        with self._acting():
             mujoco.mj_step(self.model, self.data)
         self._check_finite()
         # the step leaves the poses of its beginning
@@ -137,10 +146,10 @@ class Simulation:
         """The present, on data of its own: mj_forward on the running data would disturb its warm start."""
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
         mujoco.mj_setState(self.model, self._shown, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
-        with self.buoyancy.installed():
+        with self._acting():
             mujoco.mj_forward(self.model, self._shown)
         data, water, now = self._shown, self.scene.water, float(self._shown.time)
-        loads = self.buoyancy.evaluate(data)
+        loads = self.buoyancy.loads(data)
         centre = self.centre_of_mass(data)
         elevation = float(water.elevation(centre[0], centre[1], now))
         lifted = water.depth(loads.hull.centroid, now)

@@ -5,7 +5,11 @@ not when a kernel of another file changes that it has built in. So what is older
 """
 
 import contextlib
+import sys
 from pathlib import Path
+from typing import Any
+
+from numba.core import event
 
 _FOLDER = Path(__file__).parent
 
@@ -20,4 +24,23 @@ def _drop_stale(folder: Path) -> None:
                 compiled.unlink()
 
 
+class _Patience(event.Listener):  # type: ignore[misc]
+    """Tells once that it takes a while, when a kernel is compiled that no earlier run has left compiled."""
+
+    def __init__(self) -> None:
+        self._told = False
+
+    def on_start(self, event: Any) -> None:
+        """A function begins to be compiled."""
+        if not self._told and event.data["dispatcher"].py_func.__module__.startswith(__name__):
+            self._told = True
+            print(
+                "buoyancy_mj: compiling, once per installation; this takes about half a minute", file=sys.stderr, flush=True
+            )
+
+    def on_end(self, event: Any) -> None:
+        """It is done."""
+
+
 _drop_stale(_FOLDER)
+event.register("numba:compile", _Patience())

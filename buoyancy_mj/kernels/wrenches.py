@@ -31,9 +31,12 @@ def add_drag(
     volumes,  # (n,) their whole volumes
     linear,  # (n, 6) force and torque per velocity along the body's axes
     quadratic,  # (n, 6) the same per velocity squared
-    masses,  # (n,)
-    inertias,  # (n, 3) about the body's axes, off-diagonal parts left out by the inverse's diagonal
+    members,  # (m,) those bodies and what is welded to each
+    member_starts,  # (n + 1,)
+    body_mass,  # (nbody,)
+    body_inertia,  # (nbody, 3)
     xipos,  # (nbody, 3)
+    ximat,  # (nbody, 9)
     xmat,  # (nbody, 9)
     cvel,  # (nbody, 6) MuJoCo's: rotation, then translation at the root's centre of mass
     subtree_com,  # (nbody, 3)
@@ -69,9 +72,12 @@ def add_drag(
         ux = cvel[b, 3] + w[1] * far[2] - w[2] * far[1] - water[0]
         uy = cvel[b, 4] + w[2] * far[0] - w[0] * far[2] - water[1]
         uz = cvel[b, 5] + w[0] * far[1] - w[1] * far[0] - water[2]
-        least_inertia = min(inertias[n, 0], inertias[n, 1], inertias[n, 2])
+        mass, inertias = _rigid_body(
+            members[member_starts[n] : member_starts[n + 1]], body_mass, body_inertia, xipos, ximat, r
+        )
+        least_inertia = min(inertias[0], inertias[1], inertias[2])
         squared_arm = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]
-        apparent = 1.0 / (1.0 / masses[n] + squared_arm / least_inertia)
+        apparent = mass * least_inertia / (least_inertia + mass * squared_arm)
         fx = fy = fz = tx = ty = tz = 0.0
         for i in range(3):
             ax, ay, az = r[i], r[3 + i], r[6 + i]
@@ -80,7 +86,7 @@ def add_drag(
             push = wet * (linear[n, i] + quadratic[n, i] * abs(speed))
             twist = wet * (linear[n, 3 + i] + quadratic[n, 3 + i] * abs(spin))
             push = -min(push, apparent / timestep) * speed
-            twist = -min(twist, inertias[n, i] / timestep) * spin
+            twist = -min(twist, inertias[i] / timestep) * spin
             fx, fy, fz = fx + push * ax, fy + push * ay, fz + push * az
             tx, ty, tz = tx + twist * ax, ty + twist * ay, tz + twist * az
         out[b, 0] += fx
@@ -89,6 +95,46 @@ def add_drag(
         out[b, 3] += tx + arm[1] * fz - arm[2] * fy
         out[b, 4] += ty + arm[2] * fx - arm[0] * fz
         out[b, 5] += tz + arm[0] * fy - arm[1] * fx
+
+
+@njit(cache=True)
+def _rigid_body(members, body_mass, body_inertia, xipos, ximat, r):
+    """Mass of bodies that move as one, and what they oppose to a torque about each axis of the frame r (9,).
+
+    The latter is torque over angular acceleration: one over the diagonal of the inverse inertia.
+    """
+    mass = x = y = z = 0.0
+    for b in members:
+        m = body_mass[b]
+        mass, x, y, z = mass + m, x + m * xipos[b, 0], y + m * xipos[b, 1], z + m * xipos[b, 2]
+    if not mass > 0.0:
+        return 0.0, (0.0, 0.0, 0.0)
+    x, y, z = x / mass, y / mass, z / mass
+    xx = yy = zz = xy = xz = yz = 0.0
+    for b in members:
+        m, q, i0, i1, i2 = body_mass[b], ximat[b], body_inertia[b, 0], body_inertia[b, 1], body_inertia[b, 2]
+        ax, ay, az = xipos[b, 0] - x, xipos[b, 1] - y, xipos[b, 2] - z
+        xx += q[0] * q[0] * i0 + q[1] * q[1] * i1 + q[2] * q[2] * i2 + m * (ay * ay + az * az)
+        yy += q[3] * q[3] * i0 + q[4] * q[4] * i1 + q[5] * q[5] * i2 + m * (ax * ax + az * az)
+        zz += q[6] * q[6] * i0 + q[7] * q[7] * i1 + q[8] * q[8] * i2 + m * (ax * ax + ay * ay)
+        xy += q[0] * q[3] * i0 + q[1] * q[4] * i1 + q[2] * q[5] * i2 - m * ax * ay
+        xz += q[0] * q[6] * i0 + q[1] * q[7] * i1 + q[2] * q[8] * i2 - m * ax * az
+        yz += q[3] * q[6] * i0 + q[4] * q[7] * i1 + q[5] * q[8] * i2 - m * ay * az
+    # the inverse of the symmetric matrix, by its cofactors
+    cxx, cyy, czz = yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy
+    cxy, cxz, cyz = xz * yz - xy * zz, xy * yz - xz * yy, xy * xz - xx * yz
+    determinant = xx * cxx + xy * cxy + xz * cxz
+    i0 = _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, r[0], r[3], r[6])
+    i1 = _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, r[1], r[4], r[7])
+    i2 = _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, r[2], r[5], r[8])
+    return mass, (i0, i1, i2)
+
+
+@njit(cache=True, inline="always")
+def _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, x, y, z):
+    """The determinant over the cofactors' quadratic form along an axis; 0 where there is no inertia."""
+    form = cxx * x * x + cyy * y * y + czz * z * z + 2.0 * (cxy * x * y + cxz * x * z + cyz * y * z)
+    return determinant / form if form > 0.0 else 0.0
 
 
 @njit(cache=True)
@@ -105,3 +151,36 @@ def merge(wet, owners, out):
     for n in range(out.shape[0]):
         for c in range(1, 4):
             out[n, c] = out[n, c] / out[n, 0] if out[n, 0] != 0.0 else math.nan
+
+
+@njit(cache=True)
+def project(
+    wrench,  # (nbody, 6) force and torque about xipos, world frame
+    bodies,  # (n,) those that have one
+    xipos,  # (nbody, 3)
+    subtree_com,  # (nbody, 3)
+    roots,  # (nbody,)
+    parents,  # (nbody,)
+    dofnum,  # (nbody,)
+    dofadr,  # (nbody,)
+    dof_parents,  # (nv,)
+    cdof,  # (nv, 6) MuJoCo's: rotation, then translation at the root's centre of mass
+    qfrc,  # (nv,)
+):
+    """Add J^T w to the generalized forces `qfrc`, as MuJoCo's mj_applyFT does for each body."""
+    for n in range(bodies.shape[0]):
+        b = bodies[n]
+        fx, fy, fz = wrench[b, 0], wrench[b, 1], wrench[b, 2]
+        # the torque about the point that the joints' axes are given at
+        root = roots[b]
+        x, y, z = xipos[b, 0] - subtree_com[root, 0], xipos[b, 1] - subtree_com[root, 1], xipos[b, 2] - subtree_com[root, 2]
+        tx = wrench[b, 3] + y * fz - z * fy
+        ty = wrench[b, 4] + z * fx - x * fz
+        tz = wrench[b, 5] + x * fy - y * fx
+        while b > 0 and dofnum[b] == 0:
+            b = parents[b]
+        i = dofadr[b] + dofnum[b] - 1 if b > 0 else -1
+        while i >= 0:
+            c = cdof[i]
+            qfrc[i] += c[0] * tx + c[1] * ty + c[2] * tz + c[3] * fx + c[4] * fy + c[5] * fz
+            i = dof_parents[i]

@@ -1,0 +1,188 @@
+"""Where MuJoCo keeps its numbers: byte offsets in mjModel and mjData, and the functions of its library."""
+
+import contextlib
+import ctypes
+import functools
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco.introspect import ast_nodes, structs
+
+from buoyancy_mj.errors import EngineError
+
+_MEND = "the water then acts through Python alone: use buoyancy.installed(native=False), or another version of MuJoCo"
+_TYPES: dict[str, Any] = {
+    "mjtNum": ctypes.c_double,
+    "double": ctypes.c_double,
+    "float": ctypes.c_float,
+    "int": ctypes.c_int,
+    "char": ctypes.c_char,
+    "mjtByte": ctypes.c_ubyte,
+    "mjtBool": ctypes.c_bool,
+    "mjtSize": ctypes.c_int64,
+    "uint64_t": ctypes.c_uint64,
+    "size_t": ctypes.c_size_t,
+    "uintptr_t": ctypes.c_size_t,
+}
+"""C types by the names that MuJoCo's introspection gives them."""
+_PROBE = """
+<mujoco>
+  <option timestep="0.00390625" gravity="0 0 -7.25"/>
+  <worldbody>
+    <body><freejoint/><geom type="box" size="1 2 3"/><body><joint/><geom size="1"/></body></body>
+  </worldbody>
+</mujoco>
+"""
+"""A small model in which every array that is looked at has something in it."""
+
+
+@functools.cache
+def offset(path: str) -> int:
+    """Byte offset of a field, as 'mjModel.opt.timestep'.
+
+    Raises:
+        EngineError: there is no such field.
+    """
+    name, *parts = path.split(".")
+    kind, total = _struct(name), 0
+    for part in parts:
+        if not hasattr(kind, part):
+            raise EngineError(f"MuJoCo {mujoco.__version__} has no {path}; {_MEND}")
+        total += getattr(kind, part).offset
+        kind = dict(kind._fields_).get(part)
+    return total
+
+
+def content(path: str, address: int) -> bytes:
+    """A copy of the array that a pointer field, as 'mjModel.geom_size', of the struct at an address points to."""
+    size, extent = _pointed(path)
+    for n in extent:
+        size *= n if isinstance(n, int) else ctypes.c_int64.from_address(address + offset(f"{path.split('.')[0]}.{n}")).value
+    return ctypes.string_at(word(address + offset(path)), size) if size else b""
+
+
+def word(address: int) -> int:
+    """The 64-bit word at an address."""
+    return ctypes.c_int64.from_address(address).value
+
+
+@functools.cache
+def function(name: str, result: Any, *arguments: Any) -> Any:
+    """A function of MuJoCo's library, for Python to call.
+
+    Raises:
+        EngineError: it has no such function.
+    """
+    return ctypes.CFUNCTYPE(result, *arguments)(symbol(name))
+
+
+def symbol(name: str) -> int:
+    """Address of a function of MuJoCo's library.
+
+    Raises:
+        EngineError: it has no such function.
+    """
+    try:
+        function = getattr(_library(), name)
+    except AttributeError:
+        raise EngineError(f"MuJoCo {mujoco.__version__} has no function {name}; {_MEND}") from None
+    return ctypes.cast(function, ctypes.c_void_p).value or 0
+
+
+def verify(paths: Sequence[str]) -> None:
+    """Compare offsets with where a live model and its data really hold their arrays and numbers.
+
+    Raises:
+        EngineError: they differ, so that nothing compiled here may touch this MuJoCo.
+    """
+    with _no_callbacks():
+        model = mujoco.MjModel.from_xml_string(_PROBE)
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+    data.time = 0.1875
+    for path in paths:
+        name, *parts = path.split(".")
+        owner = model if name == "mjModel" else data
+        value, address = functools.reduce(getattr, parts, owner), owner._address + offset(path)
+        kind = _field(path)
+        if kind is ctypes.c_void_p:
+            # of an array without elements there is nothing to find, and texts come as copies
+            right = len(value) == 0 or (
+                ctypes.string_at(word(address), len(value)) == value
+                if isinstance(value, bytes)
+                else word(address) == value.ctypes.data
+            )
+        elif isinstance(value, np.ndarray):
+            right = bool((np.ctypeslib.as_array(kind.from_address(address)) == value).all())
+        else:
+            right = kind.from_address(address).value == value
+        if not right:
+            raise EngineError(
+                f"MuJoCo {mujoco.__version__} does not keep {path} at byte {offset(path)}, as it says itself; {_MEND}"
+            )
+
+
+@functools.cache
+def _pointed(path: str) -> tuple[int, tuple[Any, ...]]:
+    """Bytes of one element, and the shape, of what a pointer field points to."""
+    name, field = path.split(".")
+    declared = next(declared for declared in structs.STRUCTS[name].fields if declared.name == field)
+    return ctypes.sizeof(_TYPES[declared.type.inner_type.name]), tuple(declared.array_extent)
+
+
+@contextlib.contextmanager
+def _no_callbacks() -> Iterator[None]:
+    """Keep the probe from those who have a callback installed."""
+    slots = {name: getattr(mujoco, f"get_mjcb_{name}")() for name in ("control", "passive")}
+    for name in slots:
+        getattr(mujoco, f"set_mjcb_{name}")(None)
+    try:
+        yield
+    finally:
+        for name, callback in slots.items():
+            getattr(mujoco, f"set_mjcb_{name}")(callback)
+
+
+@functools.cache
+def _library() -> ctypes.CDLL:
+    """MuJoCo's library, the one that its Python package has loaded."""
+    folder = Path(mujoco.__file__).parent
+    found = [path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern)]
+    if not found:
+        raise EngineError(f"there is no MuJoCo library in '{folder}'; {_MEND}")
+    return ctypes.CDLL(str(found[0]))
+
+
+def _field(path: str) -> Any:
+    """C type of a field."""
+    name, *parts = path.split(".")
+    return functools.reduce(lambda kind, part: dict(kind._fields_)[part], parts, _struct(name))
+
+
+@functools.cache
+def _struct(name: str) -> Any:
+    """One of MuJoCo's structs."""
+    return _structure(name, structs.STRUCTS[name].fields)
+
+
+def _structure(name: str, fields: Sequence[Any]) -> Any:
+    return type(name, (ctypes.Structure,), {"_fields_": [(field.name, _type(field.type, name)) for field in fields]})
+
+
+def _type(declared: Any, owner: str) -> Any:
+    """The C type that the introspection declares in a struct."""
+    if isinstance(declared, ast_nodes.PointerType):
+        return ctypes.c_void_p
+    if isinstance(declared, ast_nodes.ArrayType):
+        return functools.reduce(lambda kind, n: kind * n, reversed(declared.extents), _type(declared.inner_type, owner))
+    if isinstance(declared, ast_nodes.AnonymousStructDecl) and not isinstance(declared, ast_nodes.AnonymousUnionDecl):
+        return _structure("struct", declared.fields)
+    name = getattr(declared, "name", "union")
+    if name in structs.STRUCTS:
+        return _struct(name)
+    if name not in _TYPES:
+        raise EngineError(f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; {_MEND}")
+    return _TYPES[name]

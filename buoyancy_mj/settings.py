@@ -1,0 +1,193 @@
+"""Water, drag and method as tables of plain values, as TOML has them, and as the short texts that MJCF can hold."""
+
+import dataclasses
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from buoyancy_mj.drag import Drag
+from buoyancy_mj.errors import BuoyancyError, MethodError, SceneError, WaterError, choices
+from buoyancy_mj.exact import Exact
+from buoyancy_mj.methods import METHODS, Method
+from buoyancy_mj.tables import built
+from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
+
+WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
+"""Kinds of waves."""
+KEYS = ("density", "level", "waves", "current", "method", "drag", "geoms")
+"""What texts describe: the fields of `Water`, and the arguments of `Buoyancy`."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Settings:
+    """All that `Buoyancy` is told beside the model."""
+
+    water: Water = Water()
+    """The sea."""
+    method: Method = Exact()
+    """How the submersion is found."""
+    drag: Drag | None = Drag()
+    """How damping is estimated; None for none."""
+    geoms: tuple[str, ...] | None = None
+    """Which geoms displace water."""
+
+
+# from tables -------------------------------------------------------------------------------------------
+
+
+def water_from_table(value: Any, where: str) -> Water:
+    """The sea that a table describes; `where` names it in errors.
+
+    Raises:
+        SceneError: an unknown key or kind of wave, or a value that makes no sense. So do the others here.
+    """
+    plain = dict(table(value, where))
+    entries = plain.pop("waves", [])
+    if not isinstance(entries, list):
+        raise SceneError(f"{where}: waves is {entries!r}; needed is a list of tables [[water.waves]]")
+    waves: list[Wave] = []
+    for i, entry in enumerate(entries):
+        place = f"{where}.waves.{i}"
+        wave = dict(table(entry, place))
+        kind = wave.pop("kind", "regular")
+        if not isinstance(kind, str) or kind not in WAVES:
+            raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
+        waves.append(built(WAVES[kind], wave, place))
+    return built(Water, plain, where, waves=tuple(waves))
+
+
+def method_from_table(value: Any, where: str) -> Method:
+    """A method by its name, or a table of its `kind` and its options."""
+    plain = {"kind": value} if isinstance(value, str) else dict(table(value, where))
+    if "kind" not in plain:
+        raise SceneError(f"{where}: 'kind' is missing; needed is one of {', '.join(METHODS)}")
+    kind = plain.pop("kind")
+    if not isinstance(kind, str) or kind not in METHODS:
+        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), METHODS)}")
+    return built(METHODS[kind], plain, where)
+
+
+def drag_from_table(value: Any, where: str) -> Drag | None:
+    """Whether there is drag, or a table of its coefficients."""
+    if isinstance(value, bool):
+        return Drag() if value else None
+    return built(Drag, table(value, where), where)
+
+
+def table(value: Any, where: str) -> Mapping[str, Any]:
+    """A table, or an error that says it should be one."""
+    if not isinstance(value, dict):
+        raise SceneError(f"{where} is {value!r}; needed is a table")
+    return value
+
+
+# from texts, and back ----------------------------------------------------------------------------------
+
+
+def settings_from_texts(texts: Mapping[str, str], where: str) -> Settings:
+    """What texts by the names of `KEYS` describe; empty ones, and missing ones, are defaults.
+
+    A wave is its kind and its fields, 'regular amplitude=0.3 frequency=0.5', several stand between
+    semicolons; a method is its name and its options; drag is true, false, or its coefficients.
+
+    Raises:
+        SceneError: a text that makes no sense; the message names its key.
+    """
+    given = {key: text.strip() for key, text in texts.items() if text.strip()}
+    sea: dict[str, Any] = {key: plain_value(given[key]) for key in ("density", "level") if key in given}
+    if "current" in given:
+        sea["current"] = [plain_value(word) for word in given["current"].replace(",", " ").split()]
+    if "waves" in given:
+        sea["waves"] = [_words(wave, f"{where}: waves") for wave in given["waves"].split(";") if wave.strip()]
+    drag = given.get("drag", "true")
+    return Settings(
+        water=water_from_table(sea, where),
+        method=method_from_table(_words(given.get("method", "exact"), f"{where}: method"), f"{where}: method"),
+        drag=drag_from_table(_words(drag, f"{where}: drag") if "=" in drag else plain_value(drag), f"{where}: drag"),
+        geoms=tuple(given["geoms"].replace(",", " ").split()) if "geoms" in given else None,
+    )
+
+
+def texts_from_settings(settings: Settings) -> dict[str, str]:
+    """Texts from which `settings_from_texts` makes the same settings again, to the last bit.
+
+    Raises:
+        WaterError, MethodError: a wave or a method of a kind that has no text.
+    """
+    water, texts = settings.water, {}
+    texts["density"], texts["level"] = repr(float(water.density)), repr(float(water.level))
+    texts["current"] = " ".join(repr(float(speed)) for speed in water.current)
+    assert isinstance(water.waves, Sequence)
+    texts["waves"] = "; ".join(_wave_text(wave) for wave in water.waves)
+    method = settings.method
+    if type(method) not in METHODS.values():
+        raise MethodError(f"{method!r} cannot be written into a model; possible are {', '.join(METHODS)}")
+    texts["method"] = " ".join([method.name, *_fields(method)])
+    texts["drag"] = " ".join(_fields(settings.drag, all_of_them=True)) if settings.drag else "false"
+    texts["geoms"] = " ".join(settings.geoms or ())
+    return {key: text for key, text in texts.items() if text}
+
+
+def plain_value(text: str) -> Any:
+    """A value of TOML, or a bare word."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def _words(text: str, where: str) -> dict[str, Any]:
+    """The table that 'kind key=value key=value' describes; the kind may be missing."""
+    kind, *words = text.split() if "=" not in text.split()[0] else ("", *text.split())
+    for word in words:
+        if "=" not in word:
+            raise SceneError(
+                f"{where} is '{text.strip()}'; after the kind it must be key=value pairs between blanks, not '{word}'"
+            )
+    pairs = (word.split("=", 1) for word in words)
+    return ({"kind": kind} if kind else {}) | {key: plain_value(value) for key, value in pairs}
+
+
+def _wave_text(wave: Wave) -> str:
+    """A wave in words, by whichever of its fields give it back to the last bit."""
+    kinds = [kind for kind, cls in WAVES.items() if type(wave) is cls]
+    if not kinds:
+        raise WaterError(f"{wave!r} cannot be written into a model; possible are RegularWave and LevelOscillation")
+    if isinstance(wave, RegularWave):
+        others = {f.name: getattr(wave, f.name) for f in dataclasses.fields(wave) if f.name not in _SAME}
+        for name in _SAME:
+            try:
+                again = RegularWave(**others, **{name: getattr(wave, name)})
+            except BuoyancyError:
+                continue
+            if np.array_equal(again.rows, wave.rows):
+                leave = [other for other in _SAME if other != name]
+                return " ".join([kinds[0], *_fields(wave, leave)])
+    return " ".join([kinds[0], *_fields(wave)])
+
+
+_SAME = ("frequency", "period", "wavelength")
+"""Fields of a regular wave that say the same."""
+
+
+def _fields(value: Any, leave: Sequence[str] = (), *, all_of_them: bool = False) -> list[str]:
+    """The fields of a dataclass that are not at their defaults, as key=value."""
+    fields = [field for field in dataclasses.fields(value) if field.name not in leave]
+    return [
+        f"{field.name}={_toml(getattr(value, field.name))}"
+        for field in fields
+        if all_of_them or getattr(value, field.name) != field.default
+    ]
+
+
+def _toml(value: Any) -> str:
+    """A value without blanks, as `plain_value` reads it."""
+    if isinstance(value, bool | str):
+        return str(value).lower() if isinstance(value, bool) else value
+    if isinstance(value, tuple):
+        return f"[{','.join(_toml(item) for item in value)}]"
+    number = float(value)
+    return str(int(value)) if isinstance(value, int) else ("inf" if math.isinf(number) else repr(number))
