@@ -54,7 +54,10 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
         with contextlib.suppress(EngineError):
             add_water(spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms)
     model = _compiled(spec, path)
-    data = mujoco.MjData(model)
+    try:
+        data = mujoco.MjData(model)
+    except mujoco.FatalError as error:
+        raise raised() or error from None
     _place(model, data, scene.start, bodies)
     return model, data, bodies
 

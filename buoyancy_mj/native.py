@@ -1,5 +1,6 @@
 """What compiled code needs to act without Python: tables of the water and of where results go, and C functions."""
 
+import collections
 import ctypes
 import functools
 import threading
@@ -231,9 +232,12 @@ def told(function: Callable[[int, int, int], None]) -> Any:
         try:
             function(first, second, third)
         except BaseException as error:
-            # read by the engine before this thread raises another
-            _RAISED.text, _RAISED.error = c_text(f"buoyancy_mj: {error}"), error
-            return ctypes.addressof(_RAISED.text)
+            # without its frames: what they hold must not be freed by the end of a thread
+            error.__context__ = error.__cause__ = None
+            _RAISED.error = error.with_traceback(None)
+            # kept for the engine to read; a thread that is not Python's keeps nothing of its own
+            _TEXTS.append(c_text(f"buoyancy_mj: {error}"))
+            return ctypes.addressof(_TEXTS[-1])
         return 0
 
     return _THREE_WORDS(called)
@@ -258,6 +262,7 @@ def address(function: Any) -> int:
 
 _THREE_WORDS = ctypes.CFUNCTYPE(_WORD, _WORD, _WORD, _WORD)
 _RAISED = threading.local()
+_TEXTS: collections.deque[Any] = collections.deque(maxlen=4 * THREADS)
 
 
 @functools.cache
