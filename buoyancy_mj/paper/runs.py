@@ -72,7 +72,8 @@ def steps(
     # mass and inertia along and about the joint's axes
     model.dof_damping[:] = rate * model.dof_M0
     buoyancy = Buoyancy(model, scene.water, drag=scene.drag, method=method)
-    with buoyancy.installed():
+    # in Python, which leaves what was wet in the method's own results
+    with buoyancy.installed(native=False):
         for _ in range(round(scene.duration / scene.timestep)):
             mujoco.mj_step(model, data)
             yield buoyancy, data, buoyancy.packed.results
