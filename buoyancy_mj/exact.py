@@ -56,35 +56,31 @@ class PackedHulls:
         """Whole volumes (h,) [m^3]."""
         edges = _longest_edges(meshes, np.asarray(bodies), water)
         fine = [refined(mesh.vertices, mesh.faces, edge) for mesh, edge in zip(meshes, edges, strict=True)]
-        trees = [grown(vertices, faces, water) for vertices, faces in fine]
-        self._vertices = np.concatenate([vertices for vertices, _ in fine])
-        self._vertex_starts = np.cumsum([0, *(len(vertices) for vertices, _ in fine)])
-        self._face_starts = np.cumsum([0, *(len(faces) for _, faces in fine)])
-        self._nodes = np.cumsum([0, *(len(tree.first) for tree in trees)])
+        trees = [grown(mesh, *triangles, water) for mesh, triangles in zip(meshes, fine, strict=True)]
+        starts = np.cumsum([0, *(len(tree.vertices) for tree in trees)])
+        firsts = np.cumsum([0, *(len(tree.faces) for tree in trees)])
+        self._nodes = np.cumsum([0, *(len(tree.spans) for tree in trees)])
+        self._vertices = np.concatenate([tree.vertices for tree in trees])
         # unsigned, since Numba asks of a signed index whether it counts from the end
-        self._faces = np.concatenate([t.faces + start for t, start in zip(trees, self._vertex_starts, strict=False)]).astype(
-            np.uint32
+        self._faces = np.concatenate([t.faces + start for t, start in zip(trees, starts, strict=False)]).astype(np.uint32)
+        self._spans = np.concatenate(
+            [t.spans + np.array([f, f, v, v, n]) for t, f, v, n in zip(trees, firsts, starts, self._nodes, strict=False)]
         )
-        self._first = np.concatenate([t.first + start for t, start in zip(trees, self._face_starts, strict=False)])
-        self._last = np.concatenate([t.last + start for t, start in zip(trees, self._face_starts, strict=False)])
-        self._skip = np.concatenate([t.skip + start for t, start in zip(trees, self._nodes, strict=False)])
-        self._boxes = np.concatenate([t.boxes for t in trees])
-        self._moments = np.concatenate([t.moments for t in trees])
-        self._slacks = np.array([slack(mesh, water) for mesh in meshes])
+        self._boxes = np.concatenate([tree.boxes for tree in trees])
+        self._moments = np.concatenate([tree.moments for tree in trees])
+        self._slacks = np.array([slack(mesh) for mesh in meshes])
         a, b, c = self._vertices[self._faces.T]
-        self._face_areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-        self._stamps, self._stamp = np.zeros(len(self._vertices), np.int64), 0
-        self._leaves = np.empty(len(self._first), np.int64)
+        vectors = 0.5 * np.cross(b - a, c - a)
+        self._areas = np.column_stack([vectors, np.linalg.norm(vectors, axis=1)])
         self._waves = water.rows
-        self._points = np.empty((len(self._vertices), 4))
+        self._depths, self._swell = np.empty(np.diff(starts).max()), np.empty((len(self._waves), 5))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
 
     ARRAYS = (
-        "vertices", "vertex_starts", "faces", "face_starts", "face_areas", "nodes", "first", "last", "skip", "boxes",
-        "moments", "slacks", "whole", "frames",
+        "vertices", "faces", "areas", "nodes", "spans", "boxes", "moments", "slacks", "whole", "frames", "depths", "swell",
     )  # fmt: skip
-    """What describes the hulls, see `kernels.clip.submerge_hulls`."""
+    """What describes the hulls, and what is worked in, see `kernels.clip.submerge_hulls`."""
 
     @property
     def arrays(self) -> Mapping[str, NDArray[Any]]:
@@ -100,17 +96,12 @@ class PackedHulls:
         self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
     ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
-        self._stamp += 1
         clip.submerge_hulls(
             self._vertices,
-            self._vertex_starts,
             self._faces,
-            self._face_starts,
-            self._face_areas,
+            self._areas,
             self._nodes,
-            self._first,
-            self._last,
-            self._skip,
+            self._spans,
             self._boxes,
             self._moments,
             self._slacks,
@@ -121,10 +112,8 @@ class PackedHulls:
             self.water.level,
             self._waves,
             time,
-            self._stamp,
-            self._points,
-            self._stamps,
-            self._leaves,
+            self._depths,
+            self._swell,
             self.results,
         )
         return self.results

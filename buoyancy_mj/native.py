@@ -204,21 +204,11 @@ class _Scratch(Table):
 
     def __init__(self, arrays: Mapping[str, NDArray[Any]], record: Record) -> None:
         self.record = record
-        vertices, nodes = len(arrays["vertices"]), len(arrays["first"])
-        super().__init__(
-            kernel.Scratch,
-            {
-                "points": np.empty((vertices, 4)),
-                "stamps": np.zeros(vertices, np.int64),
-                "leaves": np.empty(nodes, np.int64),
-                "state": np.array([0, 0, record.address]),
-            },
-        )
+        own = {name: np.empty_like(arrays[name]) for name in ("depths", "swell")}
+        super().__init__(kernel.Scratch, own | {"state": np.array([0, record.address])})
 
 
-NO_HULLS: Mapping[str, NDArray[Any]] = {
-    name: np.zeros((0, 3) if name in ("vertices", "faces") else (0,), np.int64) for name in PackedHulls.ARRAYS
-}
+NO_HULLS: Mapping[str, NDArray[Any]] = {name: np.zeros(0, np.int64) for name in PackedHulls.ARRAYS}
 """Of a water whose hulls compiled code does not submerge."""
 NO_DAMPING = Damping(
     np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0, np.int64), np.zeros(1, np.int64)

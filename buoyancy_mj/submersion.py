@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import math
 import threading
 
 import numpy as np
@@ -51,27 +52,24 @@ def submerge(
         MeshError: a position or rotation of the wrong shape, or a rotation that is none.
         MethodError: there is no such method.
     """
-    origin = np.asarray(position, float)
-    turn = np.eye(3) if rotation is None else np.asarray(rotation, float)
-    if origin.shape != (3,) or not np.isfinite([*origin, time]).all():
+    origin = np.ascontiguousarray(position, float)
+    turn = np.eye(3) if rotation is None else np.ascontiguousarray(rotation, float)
+    if origin.shape != (3,) or not math.isfinite(sum(origin.tolist(), float(time))):
         raise MeshError(f"position is {position!r} and time {time}; they must be three finite numbers and one")
-    if turn.shape != (3, 3) or not np.allclose(turn @ turn.T, np.eye(3), atol=1e-6) or np.linalg.det(turn) < 0.0:
+    if turn.shape != (3, 3) or not clip.is_rotation(turn):
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
-    chosen, sea = method_of(method), water or Water()
-    if chosen == Exact():
+    chosen, sea = method_of(method), water or _STILL
+    if type(chosen) is Exact:
         with _LOCK:
             row = _packed(mesh, sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
     else:
         # may carry something from step to step
         row = chosen.packed([mesh], [0], [0], sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0]
-    return Submersion(
-        volume=float(row[clip.VOLUME]),
-        centroid=row[clip.CENTROID],
-        wetted_area=float(row[clip.WETTED_AREA]),
-        waterplane_area=float(row[clip.WATERPLANE_AREA]),
-    )
+    volume, _, _, _, wetted_area, waterplane_area = row.tolist()
+    return Submersion(volume, row[clip.CENTROID], wetted_area, waterplane_area)
 
 
+_STILL = Water()
 _LOCK = threading.Lock()  # a packed mesh has one set of results
 
 

@@ -95,7 +95,7 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
 
 def tree_or_plain(mesh: TriMesh, water: Water, few: int) -> exact.PackedHulls:
     """A mesh with a tree (few = 0) or with one leaf."""
-    with mock.patch.multiple(tree, FEW=few, FEW_IN_WAVES=few):
+    with mock.patch.multiple(tree, FEW=few):
         return exact.PackedHulls([mesh], [0], [0], water)
 
 

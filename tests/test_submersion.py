@@ -262,7 +262,7 @@ def test_in_steep_waves_four_hulls_long_the_error_is_below_half_a_thousandth(nam
     # a mesh at least ten times finer
     monkeypatch.setattr(exact, "WAVE_TOLERANCE", exact.WAVE_TOLERANCE / 150.0)
     monkeypatch.setattr(exact, "MOST_TRIANGLES", 10**9)
-    monkeypatch.setattr(tree, "FEW_IN_WAVES", 10**9)
+    monkeypatch.setattr(tree, "FEW", 10**9)
     reference = exact.PackedHulls([mesh], [0], [0], water)
     assert len(reference._faces) > 10 * len(packed._faces)
     for seed in range(20):

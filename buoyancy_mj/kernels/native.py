@@ -16,7 +16,7 @@ from buoyancy_mj.kernels import clip, wrenches
 
 Water = IntEnum(
     "Water",
-    "vertices vertex_starts faces face_starts face_areas nodes first last skip boxes moments slacks whole frames waves "
+    "vertices faces areas nodes spans boxes moments slacks whole frames waves "
     "owners bodies damped volumes linear quadratic members member_starts sea current offsets pool links",
     start=0,
 )
@@ -27,10 +27,10 @@ Record = IntEnum("Record", "results centres buoyancy drag total instant ids", st
 """Arrays of what an evaluation leaves."""
 Id = IntEnum("Id", "alive model data water sizes", start=0)
 """Words of 'ids': whether it is in use; addresses of what it is of; and a sum over the sizes of the model's geoms."""
-Scratch = IntEnum("Scratch", "points stamps leaves state", start=0)
+Scratch = IntEnum("Scratch", "depths swell state", start=0)
 """Arrays to work in."""
-State = IntEnum("State", "taken stamp record", start=0)
-"""Words of 'state': whether they are taken, the last stamp, and the address of a record that goes with them."""
+State = IntEnum("State", "taken record", start=0)
+"""Words of 'state': whether they are taken, and the address of a record that goes with them."""
 Context = IntEnum("Context", "plugin_data resolve error", start=0)
 """Words that a plugin is given: the offset of that field, and C functions."""
 Offset = IntEnum(
@@ -132,6 +132,11 @@ def _words(table, k):
 
 
 @njit(cache=True, inline="always")
+def _spans(table, k):
+    return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8), 5), np.int64)
+
+
+@njit(cache=True, inline="always")
 def _corners(table, k):
     return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8), 3), np.uint32)
 
@@ -170,21 +175,15 @@ def _evaluate(model, data, water, scratch, record):
         if text != 0:
             return text
     else:
-        state = _words(scratch, Scratch.state)
-        state[State.stamp] += 1
         clip.submerge_hulls(
             _grid(water, Water.vertices),
-            _words(water, Water.vertex_starts),
             _corners(water, Water.faces),
-            _words(water, Water.face_starts),
-            _row(water, Water.face_areas),
+            _grid(water, Water.areas),
             _words(water, Water.nodes),
-            _words(water, Water.first),
-            _words(water, Water.last),
-            _words(water, Water.skip),
+            _spans(water, Water.spans),
             _grid(water, Water.boxes),
             _grid(water, Water.moments),
-            _row(water, Water.slacks),
+            _grid(water, Water.slacks),
             _grid(water, Water.whole),
             _words(water, Water.frames),
             _doubles(word(data + offsets[Offset.geom_xpos]), ngeom, 3),
@@ -192,10 +191,8 @@ def _evaluate(model, data, water, scratch, record):
             sea[1],
             waves,
             time,
-            state[State.stamp],
-            _grid(scratch, Scratch.points),
-            _words(scratch, Scratch.stamps),
-            _words(scratch, Scratch.leaves),
+            _row(scratch, Scratch.depths),
+            _grid(scratch, Scratch.swell),
             wet,
         )
     wrenches.merge(wet, owners, centres)

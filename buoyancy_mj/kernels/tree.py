@@ -1,8 +1,9 @@
 """A tree over the triangles of a mesh, in whose nodes stand bounds and moments of the area under them.
 
-Nodes are in preorder: the first child of a node comes right behind it, and `skip` names the node
-behind all of its children, so that a walk needs no stack. A node holds the triangles from `first`
-up to `last` in the order of the tree; a leaf is a node whose `skip` comes next.
+Nodes are in preorder: the first child of a node comes right behind it, and each names the node
+behind all of its children, so that a walk needs no stack; for a leaf that one comes next. The span
+of a node is its first triangle and one behind its last, in the order of the tree, the same for its
+vertices, and that node. Each leaf has vertices of its own, so that they lie together.
 
 The moments of the vector area dA about the middle o of the node's box, with y = x - o, are
 
@@ -21,16 +22,14 @@ MOMENTS = 31
 
 
 @njit(cache=True)
-def build(corners, leaf, order, first, last, skip):
+def build(corners, leaf, order, spans):
     """Sort triangles into a tree by halves along the widest side of their middles.
 
     Args:
         corners: of the triangles (n, 3, 3).
         leaf: most triangles of a leaf.
         order: (n,) of 0 .. n - 1; becomes the order of the tree.
-        first: of the nodes, written, as are last and skip (at least 4 n / leaf + 1 each).
-        last: likewise.
-        skip: likewise.
+        spans: of the nodes, written but for the vertices (at least 4 n / leaf + 1, 5).
 
     Returns:
         The number of nodes.
@@ -46,7 +45,7 @@ def build(corners, leaf, order, first, last, skip):
     while top:
         top -= 1
         low, high = lows[top], highs[top]
-        first[count], last[count] = low, high
+        spans[count, 0], spans[count, 1] = low, high
         count += 1
         if high - low <= leaf:
             continue
@@ -64,14 +63,47 @@ def build(corners, leaf, order, first, last, skip):
     # from the last node back, the nodes behind are known
     for node in range(count - 1, -1, -1):
         after = node + 1
-        while after < count and first[after] < last[node]:
-            after = skip[after]
-        skip[node] = after
+        while after < count and spans[after, 0] < spans[node, 1]:
+            after = spans[after, 4]
+        spans[node, 4] = after
     return count
 
 
 @njit(cache=True)
-def measure(corners, first, last, skip, boxes, moments):
+def spread(faces, spans, vertices, picked):
+    """Give each leaf vertices of its own.
+
+    Args:
+        faces: of the mesh, in the order of the tree (n, 3); become indices into `picked`.
+        spans: of the nodes; those of the vertices are written.
+        vertices: how many the mesh has.
+        picked: written: which vertex of the mesh each is (3 n).
+
+    Returns:
+        How many there are.
+    """
+    # the leaf that used a vertex last, and where it stands there
+    leaf, place = np.full(vertices, -1), np.empty(vertices, np.int64)
+    count = 0
+    for node in range(spans.shape[0]):
+        spans[node, 2] = count
+        if spans[node, 4] == node + 1:
+            for f in range(spans[node, 0], spans[node, 1]):
+                for k in range(3):
+                    i = faces[f, k]
+                    if leaf[i] != node:
+                        leaf[i], place[i] = node, count
+                        picked[count] = i
+                        count += 1
+                    faces[f, k] = place[i]
+    for node in range(spans.shape[0] - 1, -1, -1):
+        after = spans[node, 4]
+        spans[node, 3] = count if after == spans.shape[0] else spans[after, 2]
+    return count
+
+
+@njit(cache=True)
+def measure(corners, spans, boxes, moments):
     """Boxes (nodes, 7) and moments (nodes, 31) of triangles (n, 3, 3) in the order of the tree.
 
     A box is its middle, its half sides, and the cube of the smallest half diagonal among it and the
@@ -81,15 +113,15 @@ def measure(corners, first, last, skip, boxes, moments):
     y = np.empty((3, 3))
     total = np.empty(3)
     area = np.empty(3)
-    for node in range(first.shape[0]):
+    for node in range(spans.shape[0]):
         for k in range(3):
             low, high = math.inf, -math.inf
-            for i in range(first[node], last[node]):
+            for i in range(spans[node, 0], spans[node, 1]):
                 for j in range(3):
                     low, high = min(low, corners[i, j, k]), max(high, corners[i, j, k])
             boxes[node, k], boxes[node, 3 + k] = 0.5 * (low + high), 0.5 * (high - low)
         row = moments[node]
-        for i in range(first[node], last[node]):
+        for i in range(spans[node, 0], spans[node, 1]):
             for k in range(3):
                 for j in range(3):
                     y[j, k] = corners[i, j, k] - boxes[node, k]
@@ -106,10 +138,10 @@ def measure(corners, first, last, skip, boxes, moments):
                     mean = total[a] * total[b] + y[0, a] * y[0, b] + y[1, a] * y[1, b] + y[2, a] * y[2, b]
                     row[12 + 3 * m + k] += mean / 12.0 * area[k]
             row[30] += math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2)
-    for node in range(first.shape[0] - 1, -1, -1):
+    for node in range(spans.shape[0] - 1, -1, -1):
         least = (boxes[node, 3] ** 2 + boxes[node, 4] ** 2 + boxes[node, 5] ** 2) ** 1.5
         child = node + 1
-        while child < skip[node]:
+        while child < spans[node, 4]:
             least = min(least, boxes[child, 6])
-            child = skip[child]
+            child = spans[child, 4]
         boxes[node, 6] = least

@@ -17,6 +17,23 @@ def elevation(waves, x, y, time):
     return total
 
 
+SHORT = 1.6
+"""Angle [rad] up to which `short_sincos` holds."""
+
+
+@njit(cache=True, inline="always")
+def short_sincos(angle):
+    """Sine and cosine of a short angle to 1e-13, by their series: several at once in one instruction."""
+    x = angle * angle
+    sine = -x / 272.0 * (1.0 - x / 342.0)
+    sine = -x / 156.0 * (1.0 - x / 210.0 * (1.0 + sine))
+    sine = 1.0 - x / 6.0 * (1.0 - x / 20.0 * (1.0 - x / 42.0 * (1.0 - x / 72.0 * (1.0 - x / 110.0 * (1.0 + sine)))))
+    cosine = -x / 240.0 * (1.0 - x / 306.0)
+    cosine = -x / 132.0 * (1.0 - x / 182.0 * (1.0 + cosine))
+    cosine = 1.0 - x / 2.0 * (1.0 - x / 12.0 * (1.0 - x / 30.0 * (1.0 - x / 56.0 * (1.0 - x / 90.0 * (1.0 + cosine)))))
+    return angle * sine, cosine
+
+
 @njit(cache=True)
 def elevations(waves, x, y, time, out):
     """`elevation` at many points, written to `out`."""
