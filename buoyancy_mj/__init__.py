@@ -12,6 +12,7 @@ from buoyancy_mj.errors import MethodError as MethodError
 from buoyancy_mj.errors import ModelError as ModelError
 from buoyancy_mj.errors import RecordingError as RecordingError
 from buoyancy_mj.errors import SceneError as SceneError
+from buoyancy_mj.errors import SweepError as SweepError
 from buoyancy_mj.errors import WaterError as WaterError
 from buoyancy_mj.exact import Exact as Exact
 from buoyancy_mj.frames import Frame as Frame

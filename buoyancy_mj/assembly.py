@@ -54,6 +54,7 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
         with contextlib.suppress(EngineError):
             add_water(spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms)
     model = _compiled(spec, path)
+    _load(model, scene, bodies)
     try:
         data = mujoco.MjData(model)
     except mujoco.FatalError as error:
@@ -129,6 +130,21 @@ def _compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
         if isinstance(refused, BuoyancyError):
             raise refused from None
         raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
+
+
+def _load(model: mujoco.MjModel, scene: Scene, bodies: int) -> None:
+    """Give the vehicle, the first `bodies` of the model, the mass and the centre of gravity that the scene says."""
+    if scene.mass is not None:
+        factor = scene.mass / model.body_mass[1:bodies].sum()
+        model.body_mass[1:bodies] *= factor
+        model.body_inertia[1:bodies] *= factor
+    if any(scene.cog_shift):
+        model.body_ipos[1] += scene.cog_shift
+        # the sameframe shortcuts hold no longer
+        model.body_sameframe[1] = int(mujoco.mjtSameFrame.mjSAMEFRAME_NONE)
+        model.body_simple[1] = 0
+    if scene.mass is not None or any(scene.cog_shift):
+        mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
 def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int) -> None:

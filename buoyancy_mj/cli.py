@@ -20,6 +20,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from buoyancy_mj import catalog
+from buoyancy_mj import sweep as sweeps
 from buoyancy_mj.errors import BuoyancyError, SceneError
 from buoyancy_mj.frames import Summary
 from buoyancy_mj.paper.study import Study
@@ -112,6 +113,43 @@ def run(
         _out.print(f"open the recording: {_rerun()} {_quoted(file)}", highlight=False, soft_wrap=True)
 
 
+@app.command()
+@_told
+def sweep(
+    scene: _SCENE,
+    over: Annotated[
+        list[str], typer.Option("--over", metavar="KEY=a:b:n", help="A field, and n values from a to b; repeat for a grid.")
+    ],
+    out: Annotated[
+        Path, typer.Option(help="Results, a row for each run: .csv or .parquet. What is there is not run again.")
+    ],
+    draws: Annotated[int | None, typer.Option(min=1, help="So many random draws between a and b instead of a grid.")] = None,
+    seed: Annotated[int, typer.Option(help="Of the draws.")] = 0,
+    threads: Annotated[int, typer.Option(min=0, help="That step at once; 0 for one per core.")] = 0,
+    vehicle: _VEHICLE = None,
+    duration: Annotated[float | None, typer.Option(help="Simulated time [s].")] = None,
+    timestep: _TIMESTEP = None,
+    method: _METHOD = None,
+    settings: _SET = None,
+    geoms: _GEOMS = None,
+) -> None:
+    """Run a scene many times over a grid or random draws of its fields, as batches."""
+    fields = [sweeps.parsed(text) for text in over]
+    path = catalog.scene_path(scene)
+    common = tuple(_settings(vehicle, duration, timestep, settings, geoms, method))
+    read_scene(path, common)
+    values = sweeps.grid(fields) if draws is None else sweeps.draws(fields, draws, seed)
+    plan = sweeps.Sweep(path, common, tuple(field.key for field in fields), tuple(values), out)
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    failed = 0
+    with Progress(*columns, console=_err, transient=True, disable=not _err.is_terminal) as progress:
+        task = progress.add_task(path.stem, total=len(values))
+        for row in plan.run(threads):
+            failed += row["status"] != "done"
+            progress.advance(task)
+    _out.print(f"{len(values)} runs, {failed} failed: {_quoted(out)}", highlight=False, soft_wrap=True)
+
+
 @app.command("list")
 @_told
 def list_() -> None:
@@ -181,6 +219,18 @@ def _read(
     method: str | None,
 ) -> Scene:
     """The scene with the flags laid over it."""
+    return read_scene(path, _settings(vehicle, duration, timestep, settings, geoms, method))
+
+
+def _settings(
+    vehicle: str | None,
+    duration: float | None,
+    timestep: float | None,
+    settings: list[str] | None,
+    geoms: list[str] | None,
+    method: str | None,
+) -> list[str]:
+    """The flags as settings."""
     # first, so that settings may reach the method's options
     over = [f"method={{kind={json.dumps(method, ensure_ascii=False)}}}"] if method is not None else []
     over += settings or []
@@ -194,7 +244,7 @@ def _read(
         over.append(f"timestep={timestep}")
     if geoms:
         over.append(f"geoms={json.dumps(geoms, ensure_ascii=False)}")
-    return read_scene(path, over)
+    return over
 
 
 def _recorded(simulation: Simulation, target: Path | None, *, live: bool) -> tuple[Summary, Path | None]:

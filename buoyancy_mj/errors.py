@@ -36,6 +36,10 @@ class EngineError(BuoyancyError):
     """A MuJoCo whose inside is not what compiled code here relies on."""
 
 
+class SweepError(BuoyancyError):
+    """A sweep that makes no sense, or whose results cannot be kept."""
+
+
 class RecordingError(BuoyancyError):
     """A recording that cannot be written to its end."""
 

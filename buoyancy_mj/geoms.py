@@ -185,11 +185,17 @@ def _mesh(model: mujoco.MjModel, geom: int, known: dict[tuple[float, ...], TriMe
         known[key] = TriMesh(*arrays)
         return known[key]
     name = f"mesh '{model.mesh(asset).name}' of geom '{geom_name(model, geom)}'"
-    mesh, notices = mended(*arrays, name=name)
+    mesh, notices = _mended(*(values.tobytes() for values in arrays), name)
     for notice in notices:
         warnings.warn(notice, BuoyancyWarning, stacklevel=2)
     known[key] = mesh
     return mesh
+
+
+@functools.lru_cache(maxsize=64)
+def _mended(vertices: bytes, faces: bytes, name: str) -> tuple[TriMesh, list[str]]:
+    """`mended`, once for each mesh: the same vehicle is read again and again, for each run of a sweep."""
+    return mended(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3), name=name)
 
 
 def _tell_overlaps(model: mujoco.MjModel, hulls: Sequence[Hull]) -> None:

@@ -18,6 +18,8 @@ from buoyancy_mj.settings import table as table_of
 from buoyancy_mj.tables import built
 from buoyancy_mj.water import Water
 
+_VECTORS = ("cog_shift", "water.current", "start.position", "start.velocity", "start.angular_velocity")
+"""Fields whose numbers may be set one by one, though all are missing."""
 INTEGRATORS = {
     name.lower(): value
     for name, value in ((key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items())
@@ -86,6 +88,10 @@ class Scene:
     """How damping is estimated; None for none."""
     method: Method = Exact()
     """How the submersion is found."""
+    mass: float | None = None
+    """Mass of the whole vehicle [kg], the masses and inertias of its bodies scaled alike; None for its own."""
+    cog_shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """How far the centre of gravity of the vehicle's root body is moved, in its frame (3,) [m]."""
     text: str = ""
     """The scene as TOML text, for the record."""
     folder: Path = Path()
@@ -96,6 +102,10 @@ class Scene:
             value = getattr(self, name)
             if not least <= value <= most:
                 raise SceneError(f"{name} is {value:g}; it must be at least {least:g} and at most {most:g}")
+        if self.mass is not None and not 0.0 < self.mass < math.inf:
+            raise SceneError(f"mass is {self.mass:g} kg; it must be positive")
+        if not all(math.isfinite(shift) for shift in self.cog_shift):
+            raise SceneError(f"cog_shift is {self.cog_shift}; every number must be finite")
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}")
 
@@ -142,6 +152,11 @@ def _set(table: dict[str, Any], setting: str) -> None:
     value = plain_value(text)
     place: Any = table
     *path, last = key.strip().split(".")
+    if ".".join(path) in _VECTORS:
+        # one number of a vector that the file does not give
+        owner = table.setdefault(path[0], {}) if len(path) > 1 else table
+        if isinstance(owner, dict):
+            owner.setdefault(path[-1], [0.0, 0.0, 0.0])
     for depth, part in enumerate(path):
         place = _entry(place, part, ".".join(path[: depth + 1]), make=True)
     if isinstance(place, list):

@@ -115,12 +115,44 @@ class Simulation:
             mujoco.mj_step(self.model, self.data)
         self._check_finite()
         # the step leaves the poses of its beginning
-        self._watch(self.data, float(self.data.time) - self.model.opt.timestep)
-        pairs = self.data.contact.geom
+        data, now = self.data, float(self.data.time)
+        self._watch(data.xpos, data.xmat, data.xipos, now - self.model.opt.timestep)
+        self._look_for_contact(data, now)
+
+    def _look_for_contact(self, data: mujoco.MjData, now: float) -> None:
+        """Count the step that ended now if the vehicle touched something fixed in it."""
+        pairs = data.contact.geom
         if len(pairs) and self._touches[pairs[:, 0], pairs[:, 1]].any():
             self._contact_steps += 1
             if self._first_contact is None:
-                self._first_contact = float(self.data.time)
+                self._first_contact = now
+
+    def follow(
+        self, xpos: NDArray[np.float64], xmat: NDArray[np.float64], xipos: NDArray[np.float64], qpos: NDArray[np.float64],
+        ncon: NDArray[np.int64], wall_time: float,
+    ) -> None:  # fmt: skip
+        """Take a whole run that was stepped elsewhere, for the summary.
+
+        Args:
+            xpos: of all bodies at the beginning of each step (steps, nbody, 3) [m].
+            xmat: likewise (steps, nbody, 9).
+            xipos: likewise (steps, nbody, 3) [m].
+            qpos: at the end of each step (steps, nq).
+            ncon: number of contacts in each step (steps,).
+            wall_time: that it took [s].
+        """
+        timestep, data = self.model.opt.timestep, self._shown
+        starts = np.vstack([self.data.qpos[None], qpos])
+        for step, poses in enumerate(zip(xpos, xmat, xipos, strict=True)):
+            self._watch(*poses, step * timestep)
+            if ncon[step]:
+                data.qpos[:] = starts[step]
+                mujoco.mj_fwdPosition(self.model, data)
+                self._look_for_contact(data, (step + 1) * timestep)
+        self.data.qpos[:], self.data.time = qpos[-1], len(qpos) * timestep
+        mujoco.mj_fwdPosition(self.model, self.data)
+        self._watch(self.data.xpos, self.data.xmat, self.data.xipos, float(self.data.time))
+        self._wall = wall_time
 
     def summary(self) -> Summary:
         """What came of the frames so far."""
@@ -158,7 +190,7 @@ class Simulation:
             potential=float(data.energy[0]),
             buoyancy=float(np.nansum(loads.hull.force[:, 2] * lifted)),
         )
-        self._watch(data, now)
+        self._watch(data.xpos, data.xmat, data.xipos, now)
         attitude = _roll_pitch_yaw(data.xmat[self.root])
         return Frame(now, data, loads, centre, attitude, self._draft, elevation, energy)
 
@@ -166,14 +198,14 @@ class Simulation:
         """Of the vehicle (3,) [m], world frame."""
         return self._masses @ data.xipos[self.vehicle] / self.mass
 
-    def _watch(self, data: mujoco.MjData, now: float) -> None:
-        """Keep what the summary tells of the poses in `data`."""
+    def _watch(self, xpos: NDArray[np.float64], xmat: NDArray[np.float64], xipos: NDArray[np.float64], now: float) -> None:
+        """Keep what the summary tells of poses."""
         self._draft = max(
-            float(self.scene.water.depth(corners @ data.xmat[body].reshape(3, 3).T + data.xpos[body], now).max())
+            float(self.scene.water.depth(corners @ xmat[body].reshape(3, 3).T + xpos[body], now).max())
             for body, corners in self._corners
         )
         self._peak_draft = max(self._peak_draft, self._draft)
-        self._heights.append((now, float(self.centre_of_mass(data)[2])))
+        self._heights.append((now, float(self._masses @ xipos[self.vehicle, 2] / self.mass)))
 
     def _check_scale(self) -> None:
         """A slip of units gives a hull a thousand million times its volume."""
@@ -205,11 +237,15 @@ class Simulation:
                     body = int(self.model.jnt_bodyid[joint])
                 else:
                     body = int(self.model.dof_bodyid[told.lastinfo])
-                raise DivergenceError(
-                    f"the simulation diverged at {self.data.time:.4g} s: the {quantity} of body "
-                    f"'{body_name(self.model, body)}' is not a finite, sensible number; try a smaller timestep "
-                    f"(now {self.scene.timestep:g} s) or another integrator (now {self.scene.integrator})"
-                )
+                name = body_name(self.model, body)
+                raise DivergenceError(self.divergence(float(self.data.time), f"the {quantity} of body '{name}'"))
+
+    def divergence(self, now: float, what: str = "a position, velocity or acceleration") -> str:
+        """The sentence that tells it."""
+        return (
+            f"the simulation diverged at {now:.4g} s: {what} is not a finite, sensible number; try a smaller timestep "
+            f"(now {self.scene.timestep:g} s) or another integrator (now {self.scene.integrator})"
+        )
 
 
 def _corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:

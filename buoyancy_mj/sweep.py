@@ -1,0 +1,329 @@
+"""Many runs of one scene: a grid or random draws over its fields, as batches on all cores, one row of results each."""
+
+import csv
+import dataclasses
+import hashlib
+import itertools
+import math
+import os
+import time
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+from mujoco import batch
+from numpy.typing import NDArray
+
+from buoyancy_mj.callbacks import plugin_instances
+from buoyancy_mj.errors import BuoyancyError, DivergenceError, SweepError
+from buoyancy_mj.frames import Summary
+from buoyancy_mj.scene import Scene, read_scene
+from buoyancy_mj.simulation import Simulation
+
+AT_ONCE = 64
+"""Most runs in a batch: as many are lost at most when the sweep is killed."""
+ROOM = 2e8
+"""Memory that the poses of a batch may take [bytes]."""
+_SUMMARY = tuple(f.name for f in dataclasses.fields(Summary) if f.name not in ("scene", "wall_time", "real_time_factor"))
+_ABOUT = ("run", "scene")
+_STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
+
+
+@dataclasses.dataclass(frozen=True)
+class Over:
+    """One field of the scene and the values it takes."""
+
+    key: str
+    """As for `--set`, 'water.waves.0.amplitude'."""
+    low: float
+    """First value."""
+    high: float
+    """Last value."""
+    count: int
+    """How many, evenly spaced; of random draws this plays no part."""
+
+    @property
+    def values(self) -> list[float]:
+        """All of them."""
+        return np.linspace(self.low, self.high, self.count).tolist()
+
+
+def parsed(text: str) -> Over:
+    """'KEY=a:b:n', n values from a to b, or 'KEY=a:b' for random draws.
+
+    Raises:
+        SweepError: it is nothing of that kind.
+    """
+    key, equals, span = text.partition("=")
+    parts = span.split(":")
+    try:
+        low, high = float(parts[0]), float(parts[1])
+        count = int(parts[2]) if len(parts) == 3 else 0
+        if not (equals and key.strip() and len(parts) in (2, 3) and math.isfinite(low) and math.isfinite(high)):
+            raise ValueError
+        if len(parts) == 3 and count < 1:
+            raise ValueError
+    except (ValueError, IndexError):
+        raise SweepError(
+            f"--over is '{text}'; it must be KEY=a:b:n, n values from a to b, as start.position.2=0:0.5:6, "
+            "or KEY=a:b with --draws"
+        ) from None
+    return Over(key.strip(), low, high, count)
+
+
+def grid(over: Sequence[Over]) -> list[tuple[float, ...]]:
+    """All combinations of values, the last field fastest.
+
+    Raises:
+        SweepError: a field without a number of values.
+    """
+    for one in over:
+        if one.count == 0:
+            raise SweepError(
+                f"--over {one.key}={one.low:g}:{one.high:g} has no number of values; add it (:n), or give --draws"
+            )
+    return list(itertools.product(*(one.values for one in over)))
+
+
+def draws(over: Sequence[Over], count: int, seed: int) -> list[tuple[float, ...]]:
+    """Random combinations, each value uniform between its ends; the same for the same seed."""
+    low, high = (np.array([getattr(one, end) for one in over]) for end in ("low", "high"))
+    return [tuple(row) for row in np.random.default_rng(seed).uniform(low, high, (count, len(over))).tolist()]
+
+
+class Journal:
+    """Rows of finished runs in a CSV file: written as they come, and read when a sweep goes on."""
+
+    def __init__(self, path: Path, keys: Sequence[str], scene: str, known: Sequence[Mapping[str, Any]] = ()) -> None:
+        """Open it, and read the runs that it holds.
+
+        Args:
+            path: of the file.
+            keys: fields that vary.
+            scene: a digest of what does not.
+            known: rows that a finished sweep has left elsewhere.
+
+        Raises:
+            SweepError: the file holds something else, or cannot be written.
+        """
+        self.header = [*_ABOUT, *keys, "status", "reason", *(name for name in _SUMMARY if name not in keys)]
+        self.rows: dict[int, dict[str, str]] = {}
+        try:
+            whole = path.read_bytes() if path.exists() else b""
+            # a line that a kill broke off does not count
+            complete = whole[: whole.rfind(b"\n") + 1]
+            rows = csv.DictReader(complete.decode().splitlines())
+            if complete or known:
+                self._take(path, rows.fieldnames or known[0], [*rows, *known], scene)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            self._file = path.open("r+" if path.exists() else "w", newline="")
+            self._file.truncate(len(complete))
+            self._file.seek(len(complete))
+        except (OSError, UnicodeDecodeError) as error:
+            raise SweepError(f"cannot keep results in '{path}': {error}") from error
+        self._writer = csv.DictWriter(self._file, self.header)
+        if not complete:
+            self._writer.writeheader()
+            for row in known:
+                self._writer.writerow(row)
+
+    def _take(self, path: Path, header: Iterable[str], rows: Sequence[Mapping[str, Any]], scene: str) -> None:
+        """Believe rows of earlier sweeps, if they are of this one."""
+        if list(header) != self.header:
+            raise SweepError(f"'{path}' holds other columns than this sweep has; give another --out, or remove it")
+        for row in rows:
+            if row["scene"] != scene:
+                raise SweepError(
+                    f"'{path}' holds runs of another scene, or with other flags; give another --out, or remove it"
+                )
+            self.rows[int(row["run"])] = {key: "" if value is None else str(value) for key, value in row.items()}
+
+    def add(self, row: Mapping[str, Any]) -> None:
+        """Write one row."""
+        plain = {key: "" if value is None else value for key, value in row.items()}
+        self._writer.writerow(plain)
+        self.rows[int(row["run"])] = {key: str(value) for key, value in plain.items()}
+
+    def save(self) -> None:
+        """See the rows onto the disk."""
+        self._file.flush()
+        os.fsync(self._file.fileno())
+
+    def close(self) -> None:
+        """No more rows."""
+        self._file.close()
+
+
+@dataclasses.dataclass(frozen=True)
+class Sweep:
+    """A scene and the values of its fields in each run."""
+
+    path: Path
+    """The scene's file."""
+    settings: tuple[str, ...]
+    """What all runs have, as for `--set`."""
+    keys: tuple[str, ...]
+    """Fields that vary."""
+    values: tuple[tuple[float, ...], ...]
+    """Of them in each run."""
+    out: Path
+    """Results: .csv, or .parquet."""
+
+    def __post_init__(self) -> None:
+        if self.out.suffix not in (".csv", ".parquet"):
+            raise SweepError(f"--out is '{self.out}'; results go to a file that ends in .csv or .parquet")
+        if len(set(self.keys)) < len(self.keys):
+            raise SweepError(f"a field is given twice: {', '.join(self.keys)}; give each --over once")
+
+    def run(self, threads: int = 0) -> Iterator[dict[str, str]]:
+        """Run what has not been run yet, batch by batch; a row for each run, those of earlier sweeps first.
+
+        Args:
+            threads: that step at once; 0 for one per core.
+
+        Raises:
+            SweepError: see `Journal`.
+        """
+        # parquet has no end to write to, so that a journal stands beside it until all is done
+        journal = self.out if self.out.suffix == ".csv" else self.out.with_suffix(".partial.csv")
+        known = _read_parquet(self.out) if self.out.suffix == ".parquet" and not journal.exists() else []
+        done = Journal(journal, self.keys, self._digest(), known)
+        try:
+            yield from done.rows.values()
+            todo = [i for i in range(len(self.values)) if i not in done.rows]
+            while todo:
+                now, todo = todo[:AT_ONCE], todo[AT_ONCE:]
+                for row in self._batch(now, threads):
+                    done.add(row)
+                    done.save()
+                    yield done.rows[int(row["run"])]
+        finally:
+            done.close()
+        if self.out.suffix == ".parquet":
+            _write_parquet(self.out, [done.rows[i] for i in sorted(done.rows)], done.header)
+            journal.unlink()
+
+    def _digest(self) -> str:
+        """In short, what all runs have in common."""
+        told = repr((self.path.read_bytes(), self.settings, self.keys))
+        return f"{self.path.stem} {hashlib.blake2b(told.encode(), digest_size=4).hexdigest()}"
+
+    def _scene(self, run: int) -> Scene:
+        varied = (f"{key}={value!r}" for key, value in zip(self.keys, self.values[run], strict=True))
+        return read_scene(self.path, [*self.settings, *varied])
+
+    def _batch(self, runs: Sequence[int], threads: int) -> Iterator[dict[str, Any]]:
+        """Rows of some runs, stepped together as far as their models allow."""
+        ready: dict[tuple[int, ...], list[tuple[int, Simulation]]] = {}
+        for run in runs:
+            try:
+                simulation = Simulation(self._scene(run))
+            except BuoyancyError as error:
+                yield self._row(run, reason=str(error))
+                continue
+            ready.setdefault(_layout(simulation), []).append((run, simulation))
+        for group in ready.values():
+            size = simulation_size(group[0][1])
+            most = max(1, int(ROOM / size))
+            for first in range(0, len(group), most):
+                some = group[first : first + most]
+                reasons = together([simulation for _, simulation in some], threads)
+                for (run, simulation), reason in zip(some, reasons, strict=True):
+                    yield self._row(run, simulation, reason)
+
+    def _row(self, run: int, simulation: Simulation | None = None, reason: str = "") -> dict[str, Any]:
+        row = {"run": run, "scene": self._digest(), "status": "failed" if reason else "done", "reason": reason}
+        row |= dict(zip(self.keys, self.values[run], strict=True))
+        told = dataclasses.asdict(simulation.summary()) if simulation and not reason else {}
+        return row | {name: told.get(name) for name in _SUMMARY if name not in self.keys}
+
+
+def simulation_size(simulation: Simulation) -> float:
+    """Memory of the poses of a whole run [bytes]."""
+    return 8.0 * simulation.steps * (15 * simulation.model.nbody + simulation.model.nq + 1)
+
+
+def together(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
+    """Run simulations of one layout to their ends, as a batch; for each the reason why it failed, or nothing."""
+    if not plugin_instances(simulations[0].model):
+        return [_alone(simulation) for simulation in simulations]
+    first, steps = simulations[0], simulations[0].steps
+    many = batch.Batch(first.model, len(simulations), nthread=threads)
+    many.set_models([simulation.model for simulation in simulations])
+    for name in _STATE:
+        if getattr(first.data, name).size:
+            many.bind(name)[:] = [getattr(simulation.data, name) for simulation in simulations]
+    started = time.perf_counter()
+    recorded: dict[str | int, NDArray[Any]] = {
+        name: np.zeros(
+            (len(simulations), steps, *np.shape(getattr(first.data, name))), np.int32 if name == "ncon" else float
+        )
+        for name in ("xpos", "xmat", "xipos", "qpos", "ncon")
+    }
+    clock = int(mujoco.mjtState.mjSTATE_TIME)
+    recorded[clock] = np.zeros((len(simulations), steps, 1))
+    failed: dict[int, str] = {}
+    try:
+        many.rollout(steps, record=list(recorded), out=recorded)
+    except batch.SimulationError:
+        failed = {i: many.error(i) for i in range(len(simulations)) if many.error(i)}
+    wall = (time.perf_counter() - started) / len(simulations)
+    reasons = []
+    for i, simulation in enumerate(simulations):
+        end = float(recorded[clock][i, -1, 0])
+        reason = failed.get(i, "")
+        if not reason and not abs(end - steps * first.model.opt.timestep) < 0.5 * first.model.opt.timestep:
+            reason = simulation.divergence(end)
+        if not reason:
+            poses = {str(name): values[i] for name, values in recorded.items() if name != clock}
+            simulation.follow(**poses, wall_time=wall)
+        reasons.append(reason)
+    return reasons
+
+
+def _alone(simulation: Simulation) -> str:
+    """Run one to its end; the reason why it failed, or nothing."""
+    try:
+        for _ in simulation.frames():
+            pass
+    except (DivergenceError, mujoco.FatalError) as error:
+        return str(error)
+    return ""
+
+
+def _layout(simulation: Simulation) -> tuple[int, ...]:
+    """Simulations that agree in this may be stepped in one batch."""
+    model = simulation.model
+    sizes = [int(getattr(model, f"n{name}")) for name in ("q", "v", "a", "u", "body", "geom", "site", "sensordata", "mocap")]
+    return (*sizes, simulation.steps, int(np.float64(model.opt.timestep).view(np.int64)), len(plugin_instances(model)))
+
+
+def _read_parquet(path: Path) -> list[dict[str, Any]]:
+    """The rows that a finished sweep has left, if there are any."""
+    from pyarrow import ArrowException, parquet
+
+    if not path.exists():
+        return []
+    try:
+        rows: list[dict[str, Any]] = parquet.read_table(path).to_pylist()
+    except (OSError, ArrowException) as error:
+        raise SweepError(f"cannot read the results in '{path}': {error}; give another --out, or remove it") from error
+    return rows
+
+
+def _write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequence[str]) -> None:
+    """All rows as a table, numbers as numbers."""
+    import pyarrow as pa  # comes along with Rerun
+    from pyarrow import parquet
+
+    columns: dict[str, list[Any]] = {}
+    for name in header:
+        column: list[Any] = [row[name] for row in rows]
+        if name not in ("scene", "status", "reason", "method"):
+            column = [float(value) if value != "" else None for value in column]
+        columns[name] = column
+    part = path.with_suffix(".partial.parquet")
+    parquet.write_table(pa.table(columns), part)
+    part.replace(path)

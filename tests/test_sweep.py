@@ -1,0 +1,197 @@
+"""Sweeps: each row is what a run of its own gives, whatever was interrupted, and failures are rows."""
+
+import csv
+import dataclasses
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pyarrow.parquet
+import pytest
+from typer.testing import CliRunner
+
+from buoyancy_mj import Simulation, SweepError, catalog, read_scene, sweep
+from buoyancy_mj.cli import app
+from buoyancy_mj.sweep import Over, Sweep, draws, grid, parsed
+
+QUICK = ("duration=0.3",)
+
+
+def plan(tmp_path, *over, scene="hourglass_drop_waves", name="out.csv", settings=QUICK, values=None):
+    fields = [parsed(text) for text in over]
+    return Sweep(
+        catalog.scenes()[scene], settings, tuple(f.key for f in fields), tuple(values or grid(fields)), tmp_path / name
+    )
+
+
+def read(path):
+    with path.open() as file:
+        return list(csv.DictReader(file))
+
+
+# what rows hold -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("scene", "over"),
+    [
+        ("hourglass_drop_waves", ["water.waves.0.amplitude=0.05:0.3:2", "start.position.2=0.3:0.6:2"]),
+        ("auv_waves", ["water.waves.0.phase=0:3:2", "mass=20:30:2", "cog_shift.2=-0.03:0.03:2"]),
+        ("auv_waves", ["water.waves.0.frequency=0.3:0.6:2", "water.waves.0.direction=0:1:2", "start.roll=0:0.5:2"]),
+        ("auv_pool", ["start.position.2=-1.6:-0.2:2", "mass=25:60:2"]),
+    ],
+)
+def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
+    wanted = plan(tmp_path, *over, scene=scene, settings=("duration=0.6",))
+    rows = list(wanted.run())
+    assert [row["status"] for row in rows] == ["done"] * len(wanted.values)
+    for row in rows:
+        settings = [f"{key}={row[key]}" for key in wanted.keys]
+        alone = Simulation(read_scene(wanted.path, [*wanted.settings, *settings]))
+        for _ in range(alone.steps):
+            alone.step()
+        alone._frame()
+        told = dataclasses.asdict(alone.summary())
+        for name in ("mass", "displacement", "net_weight", "peak_draft", "final_draft", "cog_z_range", "simulated_time"):
+            assert float(row[name]) == pytest.approx(told[name], rel=1e-12, abs=1e-12), name
+        assert int(float(row["contact_steps"])) == told["contact_steps"]
+        assert row["first_contact"] == ("" if told["first_contact"] is None else str(told["first_contact"]))
+
+
+def test_the_bottom_is_felt_in_a_sweep_too(tmp_path):
+    rows = list(plan(tmp_path, "mass=20:60:2", scene="auv_pool", settings=("duration=2", "start.position.2=-1.0")).run())
+    assert [int(row["contact_steps"]) > 0 for row in rows] == [False, True]
+
+
+def test_one_thread_and_two_give_the_same_rows(tmp_path):
+    rows = [list(plan(tmp_path, "start.position.2=0.3:0.9:5", name=f"{n}.csv").run(n)) for n in (1, 2)]
+    assert rows[0] == rows[1]
+
+
+def test_draws_lie_between_their_ends_and_come_again_with_their_seed():
+    over = [Over("a", 1.0, 2.0, 0), Over("b", -3.0, 5.0, 0)]
+    values = np.array(draws(over, 500, 7))
+    assert (values >= [1.0, -3.0]).all()
+    assert (values <= [2.0, 5.0]).all()
+    assert values.mean(axis=0) == pytest.approx([1.5, 1.0], abs=0.3)
+    assert draws(over, 500, 7) == [tuple(row) for row in values]
+    assert draws(over, 500, 8) != [tuple(row) for row in values]
+
+
+def test_a_grid_has_all_combinations_the_last_field_fastest():
+    assert grid([Over("a", 0.0, 1.0, 2), Over("b", 5.0, 7.0, 3)]) == [
+        (0.0, 5.0), (0.0, 6.0), (0.0, 7.0), (1.0, 5.0), (1.0, 6.0), (1.0, 7.0)
+    ]  # fmt: skip
+
+
+# going on -------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
+def test_what_is_there_is_not_run_again(name, tmp_path, monkeypatch):
+    monkeypatch.setattr(sweep, "AT_ONCE", 2)
+    wanted = plan(tmp_path, "start.position.2=0.3:0.9:6", name=name)
+    whole = list(plan(tmp_path, "start.position.2=0.3:0.9:6", name="whole.csv").run())
+    made = []
+    monkeypatch.setattr(sweep, "Simulation", lambda scene: made.append(scene) or Simulation(scene))
+    going = wanted.run()
+    for _ in range(3):
+        next(going)
+    # as a kill would leave it
+    going.close()
+    journal = tmp_path / ("out.csv" if name == "out.csv" else "out.partial.csv")
+    assert len(read(journal)) == 3
+    with journal.open("a") as file:
+        file.write("3,hourglass_drop_waves 1234,0.6")
+    rows = list(wanted.run())
+    assert len(made) == 7
+    assert sorted(rows, key=lambda row: int(row["run"])) == whole
+    assert len(list(wanted.run())) == 6
+    assert len(made) == 7
+    if name == "out.parquet":
+        assert not journal.exists()
+        table = pyarrow.parquet.read_table(wanted.out)
+        assert table["peak_draft"].to_pylist() == [float(row["peak_draft"]) for row in whole]
+
+
+@pytest.mark.slow
+def test_a_sweep_that_is_killed_goes_on(tmp_path):
+    out = tmp_path / "out.csv"
+    command = [
+        sys.executable, "-m", "buoyancy_mj", "sweep", "hourglass_drop_waves", "--over", "start.position.2=0.1:0.9:150", "--out", str(out)
+    ]  # fmt: skip
+    running = subprocess.Popen(command)
+    while not out.exists() or len(out.read_bytes().splitlines()) < 3:
+        assert running.poll() is None
+        time.sleep(0.02)
+    running.send_signal(signal.SIGKILL)
+    running.wait()
+    before = len(read(out))
+    assert before < 150
+    done = subprocess.run([*command, "--duration", "10"], capture_output=True, text=True)
+    assert "holds runs of another scene, or with other flags" in done.stderr
+    assert subprocess.run(command).returncode == 0
+    assert sorted(int(row["run"]) for row in read(out)) == list(range(150))
+
+
+# failures -------------------------------------------------------------------------------------------
+
+
+def test_runs_that_fail_are_rows_with_the_reason(tmp_path):
+    rows = list(plan(tmp_path, "water.waves.0.amplitude=-0.1:0.1:3").run())
+    assert [row["status"] for row in rows] == ["failed", "done", "done"]
+    assert "amplitude is -0.1; it must be at least 0" in rows[0]["reason"]
+    rows = list(plan(tmp_path, "start.velocity.0=0:1e150:2", name="fast.csv").run())
+    assert [row["status"] for row in rows] == ["done", "failed"]
+    assert "the simulation diverged at" in rows[1]["reason"]
+    assert "try a smaller timestep (now 0.01 s)" in rows[1]["reason"]
+    assert rows[1]["peak_draft"] == ""
+
+
+def test_what_the_engine_refuses_is_a_reason_too(tmp_path):
+    text = """<mujoco><option><flag sleep="enable"/></option>
+    <worldbody><body><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+    (tmp_path / "sleepy.xml").write_text(text)
+    rows = list(plan(tmp_path, "start.position.2=0:1:2", settings=(*QUICK, f'vehicle="{tmp_path}/sleepy.xml"')).run())
+    assert all("lets bodies at rest sleep" in row["reason"] for row in rows)
+
+
+@pytest.mark.parametrize(
+    "text", ["mass", "mass=1", "mass=1:2:0", "mass=a:b:3", "mass=1:2:3:4", "=1:2:3", "mass=0:inf:3", "mass=1:2:x"]
+)
+def test_a_span_that_is_none_is_told(text):
+    with pytest.raises(SweepError, match="it must be KEY=a:b:n, n values from a to b"):
+        parsed(text)
+
+
+def test_sweeps_that_make_no_sense_are_told(tmp_path):
+    with pytest.raises(SweepError, match=r"has no number of values; add it \(:n\), or give --draws"):
+        grid([parsed("mass=1:2")])
+    with pytest.raises(SweepError, match=r"results go to a file that ends in \.csv or \.parquet"):
+        plan(tmp_path, "mass=1:2:2", name="out.txt")
+    with pytest.raises(SweepError, match="a field is given twice: mass, mass"):
+        plan(tmp_path, "mass=1:2:2", "mass=1:2:2")
+    list(plan(tmp_path, "mass=20:21:2").run())
+    with pytest.raises(SweepError, match="holds other columns than this sweep has; give another --out, or remove it"):
+        list(plan(tmp_path, "start.yaw=0:1:2").run())
+    with pytest.raises(SweepError, match="holds runs of another scene, or with other flags"):
+        list(plan(tmp_path, "mass=20:21:2", settings=("duration=0.4",)).run())
+    (tmp_path / "folder.csv").mkdir()
+    with pytest.raises(SweepError, match="cannot keep results in"):
+        list(plan(tmp_path, "mass=20:21:2", name="folder.csv").run())
+    (tmp_path / "broken.parquet").write_text("no table")
+    with pytest.raises(SweepError, match="cannot read the results in"):
+        list(plan(tmp_path, "mass=20:21:2", name="broken.parquet").run())
+
+
+def test_the_command_tells_how_many_failed(tmp_path):
+    out = tmp_path / "rows.csv"
+    arguments = ["sweep", "hourglass_drop_still", "--over", "mass=-100:100:3", "--duration", "0.1", "--out", str(out)]
+    told = CliRunner().invoke(app, arguments)
+    assert told.exit_code == 0, told.output
+    assert "3 runs, 2 failed" in told.output
+    assert [row["status"] for row in read(out)] == ["failed", "failed", "done"]
+    told = CliRunner().invoke(app, [*arguments[:3], "mass=1:2", *arguments[4:]])
+    assert told.exit_code == 1
