@@ -11,9 +11,9 @@ from buoyancy_mj.water import Water
 
 TREE_TOLERANCE = 1e-4
 """Bound, as a fraction of the hull's volume, on what the moments of the tree lack in waves; on still water nothing."""
-LEAF = 32
-"""Most triangles of a leaf."""
-FEW = 200
+LEAVES = 64, 16
+"""Most triangles of a leaf; the smaller one in waves that larger leaves miss too much of."""
+FEW = 1000
 """Size of mesh below which one leaf is as fast as a tree."""
 SMALL = 0.5
 """Part of its leaves that must be small enough for the waves, that a tree is worth its while."""
@@ -40,8 +40,8 @@ def grown(mesh: TriMesh, vertices: NDArray[np.float64], faces: NDArray[np.int64]
     That is with few triangles, and in waves for which most leaves are too large to be answered by
     their moments.
     """
-    if len(faces) >= FEW:
-        tree = _tree(vertices, faces, LEAF)
+    for leaf in LEAVES if len(faces) >= FEW else ():
+        tree = _tree(vertices, faces, leaf)
         cubes = tree.boxes[tree.spans[:, 4] == np.arange(1, len(tree.spans) + 1), 6]
         height, moment = slack(mesh)
         small = (water.twist * cubes <= 6.0 * height) & (water.curvature * cubes <= 2.0 * moment)

@@ -1,72 +1,122 @@
 """How fast it is, as ratios measured side by side in one run.
 
-    .venv/bin/python scripts/bench.py [--quick] [--save F.json] [--compare F.json]
+    .venv/bin/python scripts/bench.py [--quick] [--only NAME ...] [--plot F.png] [--save F.json] [--compare F.json]
 
-Medians over repeats on one core: a submersion against trimesh's capped slice and against scipy's
-convex hull of the wet vertices on the same mesh and poses; the tree of moments against the plain
-way; a step of a scene with water against
-the same step without; the real-time factor of `auv_waves`.
+Medians over repeats: a submersion by the public call against trimesh's capped slice, scipy's convex
+hull of the wet vertices, manifold3d's trim and, where it is installed (pip install '.[bench]'),
+Capytaine's immersed_part, on the same meshes and poses; the tree of moments against the plain way;
+a step of a scene with water against the same step without; batches on one thread and on two; the
+real-time factor of `auv_waves`; the time from a fresh interpreter to the first step.
 """
 
 import argparse
 import json
 import statistics
+import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
 from unittest import mock
 
+import manifold3d
 import mujoco
 import numpy as np
 import trimesh
+from mujoco import batch
 from rich.console import Console
 from rich.table import Table
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, catalog, exact, read_scene, submerge, tree
+from buoyancy_mj.assembly import assembled
 from buoyancy_mj.recording import Recording
 
-POSES = [(np.array([0.0, 0.0, 0.2 * np.sin(i)]), Rotation.random(random_state=i).as_matrix()) for i in range(5)]
+try:
+    import capytaine
+except ImportError:
+    capytaine = None
+
+TURNS = [Rotation.random(random_state=i).as_matrix() for i in range(5)]
+PEERS = ("trimesh", "scipy hull", "manifold3d", "Capytaine")
+LARGE = 5_000
+"""Triangles from which exponents are fitted."""
 
 
-def median_time(call: Callable[[int], object], least: float) -> float:
+def median_time(call: Callable[[int], object], least: float, fewest: int = 5) -> float:
     """Median time of one call [s], over repeats that take `least` seconds together."""
     call(0)
     times: list[float] = []
-    while sum(times) < least or len(times) < 5:
+    while sum(times) < least or len(times) < fewest:
         started = time.perf_counter()
-        call(len(times) % len(POSES))
+        call(len(times) % len(TURNS))
         times.append(time.perf_counter() - started)
     return statistics.median(times)
 
 
-def submersions(subdivisions: int, least: float) -> dict[str, float]:
-    """Times [s] of one submersion of a sphere by us and by others."""
-    solid = trimesh.creation.icosphere(subdivisions=subdivisions)
+# a submersion ---------------------------------------------------------------------------------------
+
+
+def solids(quick: bool) -> list[tuple[str, trimesh.Trimesh]]:
+    """Meshes by name, about a metre in size, the smallest of each first."""
+    made = [("sphere", trimesh.creation.icosphere(n)) for n in ((2, 4) if quick else range(2, 8))]
+    cone = trimesh.creation.revolve([[0, -0.5], [0.5, -0.5], [0.05, 0.0], [0.5, 0.5], [0, 0.5]], sections=32)
+    torus = trimesh.creation.torus(0.6, 0.2, major_sections=32, minor_sections=16)
+    part = Simulation(read_scene(catalog.scenes()["auv_drop_still"])).hulls[0].mesh
+    hull = trimesh.Trimesh(part.vertices / part.radius, part.faces, process=False)
+    for name, solid in (("hourglass", cone.subdivide()), ("torus", torus), ("AUV pressure hull", hull)):
+        for _ in range(1 if quick else 5):
+            made.append((name, solid))
+            solid = solid.subdivide()
+    return [(name, solid) for name, solid in made if len(solid.faces) <= 330_000]
+
+
+def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
+    """Times [s] of one submersion by us and by others, in five attitudes, the middle a little above or below the surface."""
     mesh = TriMesh(solid.vertices, solid.faces)
     wave = Water(waves=RegularWave(0.1, wavelength=10.0))
+    places = [np.array([0.0, 0.0, 0.2 * np.sin(i)]) - turn @ solid.bounds.mean(axis=0) for i, turn in enumerate(TURNS)]
+    body = manifold3d.Manifold(manifold3d.Mesh64(np.array(solid.vertices), np.array(solid.faces, np.uint64)))
 
     def by_trimesh(i: int) -> tuple[float, np.ndarray]:
-        position, turn = POSES[i]
-        wet = trimesh.Trimesh(solid.vertices @ turn.T + position, solid.faces, process=False).slice_plane(
-            [0, 0, 0], [0, 0, -1], cap=True
-        )
+        turned = trimesh.Trimesh(solid.vertices @ TURNS[i].T + places[i], solid.faces, process=False)
+        wet = turned.slice_plane([0, 0, 0], [0, 0, -1], cap=True)
         return wet.volume, wet.center_mass
 
     def by_hull(i: int) -> float:
-        position, turn = POSES[i]
-        points = solid.vertices @ turn.T + position
+        points = solid.vertices @ TURNS[i].T + places[i]
         return float(ConvexHull(points[points[:, 2] < 0.0]).volume)
 
-    return {
+    def by_manifold(i: int) -> float:
+        return float(body.trim_by_plane(-TURNS[i][2], places[i][2]).volume())
+
+    def by_capytaine(i: int) -> float:
+        return float(
+            capytaine.Mesh(vertices=solid.vertices @ TURNS[i].T + places[i], faces=solid.faces).immersed_part().volume
+        )
+
+    times = {
         "triangles": float(len(solid.faces)),
-        "still": median_time(lambda i: submerge(mesh, *POSES[i]), least),
-        "waves": median_time(lambda i: submerge(mesh, *POSES[i], wave, 0.3), least),
+        "still": median_time(lambda i: submerge(mesh, places[i], TURNS[i]), least),
+        "waves": median_time(lambda i: submerge(mesh, places[i], TURNS[i], wave, 0.3), least),
         "trimesh": median_time(by_trimesh, least),
-        "hull": median_time(by_hull, least),
+        "scipy hull": median_time(by_hull, least),
+        "manifold3d": median_time(by_manifold, least),
     }
+    if capytaine is not None and len(solid.faces) < 100_000:
+        times["Capytaine"] = median_time(by_capytaine, least, fewest=1 if len(solid.faces) > 10_000 else 3)
+    packed = exact.PackedHulls([mesh], [0], [0], Water())
+    arrays = [*packed.arrays.values(), packed.results, mesh.vertices, mesh.faces]
+    times["bytes per triangle"] = sum(values.nbytes for values in arrays) / len(solid.faces)
+    return times
+
+
+def exponent(rows: list[dict[str, float]], column: str) -> float:
+    """Of the power law through times against triangles, from `LARGE` ones up."""
+    points = np.log([(row["triangles"], row[column]) for row in rows if row["triangles"] >= LARGE])
+    return float(np.polyfit(*points.T, 1)[0]) if len(points) > 1 else float("nan")
 
 
 def tree_ratios(triangles: int, least: float) -> dict[str, float]:
@@ -77,36 +127,64 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
         plate = plate.subdivide()
     still, waves = Water(), Water(waves=RegularWave(0.05, wavelength=5.0))
     rows = {}
-    for name, solid, turns in (("ball", ball, [turn for _, turn in POSES]), ("plate", plate, [np.eye(3)] * len(POSES))):
+    for name, solid, turns in (("ball", ball, TURNS), ("plate", plate, [np.eye(3)] * len(TURNS))):
         for surface, water in (("still", still), ("waves", waves)):
-            way = {few: tree_or_plain(TriMesh(solid.vertices, solid.faces), water, few) for few in (0, 10**9)}
+            mesh = TriMesh(solid.vertices, solid.faces)
+            # as it is chosen, and without the choice
+            ways = [exact.PackedHulls([mesh], [0], [0], water)]
+            with mock.patch.object(tree, "FEW", 10**9):
+                ways.append(exact.PackedHulls([mesh], [0], [0], water))
             # turn about, so that both see the same machine
-            times = {few: [] for few in way}
+            times: list[list[float]] = [[], []]
             started = time.perf_counter()
             while time.perf_counter() - started < 2.0 * least:
                 for turn in turns:
-                    for few, hulls in way.items():
+                    for way, hulls in enumerate(ways):
                         before = time.perf_counter()
                         hulls.submerge(np.zeros((1, 3)), turn.reshape(1, 9), 0.0)
-                        times[few].append(time.perf_counter() - before)
-            rows[f"{name}, {surface}"] = statistics.median(times[0]) / statistics.median(times[10**9])
+                        times[way].append(time.perf_counter() - before)
+            rows[f"{name}, {surface}"] = statistics.median(times[0]) / statistics.median(times[1])
     return {"triangles": float(len(ball.faces))} | rows
 
 
-def tree_or_plain(mesh: TriMesh, water: Water, few: int) -> exact.PackedHulls:
-    """A mesh with a tree (few = 0) or with one leaf."""
-    with mock.patch.multiple(tree, FEW=few):
-        return exact.PackedHulls([mesh], [0], [0], water)
+# steps, batches, runs -------------------------------------------------------------------------------
 
 
-def scene_step(name: str, least: float) -> dict[str, float]:
-    """Times [s] of one step of a scene with and without water."""
-    simulation = Simulation(read_scene(catalog.scenes()[name]))
-    for _ in range(100):
-        simulation.step()
-    wet = median_time(lambda i: simulation.step(), least)
-    dry = median_time(lambda i: mujoco.mj_step(simulation.model, simulation.data), least)
-    return {"with": wet, "without": dry}
+def scene_steps(name: str) -> dict[str, float]:
+    """Mean time of one step [s] over the whole of a scene, with its water (compiled) and without."""
+    scene = read_scene(catalog.scenes()[name])
+    times = {}
+    for label, afloat in (("with", True), ("without", False)):
+        best = np.inf
+        for _ in range(3):
+            model, data, _ = assembled(scene, afloat=afloat)
+            mujoco.mj_forward(model, data)
+            steps = round(scene.duration / scene.timestep)
+            started = time.perf_counter()
+            mujoco.mj_step(model, data, steps)
+            best = min(best, (time.perf_counter() - started) / steps)
+        times[label] = best
+    return times
+
+
+def batches(name: str, count: int) -> dict[str, float]:
+    """Simulated over wall time of a batch of a scene's model, on one thread and on two."""
+    scene = read_scene(catalog.scenes()[name])
+    model, data, _ = assembled(scene, afloat=True)
+    factors = {}
+    for threads in (1, 2):
+        many = batch.Batch(model, count, nthread=threads)
+        many.bind("qpos")[:] = data.qpos
+        many.step(nstep=10)
+        best = np.inf
+        for _ in range(3):
+            many.bind("qpos")[:] = data.qpos
+            many.bind("qvel")[:] = 0.0
+            started = time.perf_counter()
+            many.step(nstep=100)
+            best = min(best, time.perf_counter() - started)
+        factors[f"{threads} threads"] = count * 100 * scene.timestep / best
+    return factors
 
 
 def real_time_factors(name: str) -> dict[str, float]:
@@ -126,6 +204,60 @@ def real_time_factors(name: str) -> dict[str, float]:
     return factors
 
 
+def first_step() -> float:
+    """Time [s] from a fresh interpreter, its kernels compiled before, through a scene's first step."""
+    code = "from buoyancy_mj import *; from buoyancy_mj import catalog; "
+    code += "Simulation(read_scene(catalog.scenes()['auv_waves'])).step()"
+    times = []
+    for _ in range(3):
+        started = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        times.append(time.perf_counter() - started)
+    return statistics.median(times)
+
+
+# telling --------------------------------------------------------------------------------------------
+
+
+def tell_submersions(console: Console, measured: dict[str, dict[str, dict[str, float]]]) -> None:
+    """A table of all meshes, and the exponents of each shape."""
+    table = Table(title="one submersion, median; factors are against still water")
+    for column in ("mesh", "triangles", "still water", "waves", *PEERS, "bytes per triangle"):
+        table.add_column(column, justify="right")
+    for name, rows in measured.items():
+        for row in rows.values():
+            peers = [f"{row[peer] / row['still']:,.0f} x" if peer in row else "" for peer in PEERS]
+            table.add_row(
+                name, f"{row['triangles']:,.0f}", *(f"{row[w] * 1e6:,.0f} us" for w in ("still", "waves")), *peers,
+                f"{row['bytes per triangle']:.0f}",
+            )  # fmt: skip
+    console.print(table)
+    for name, rows in measured.items():
+        slopes = [exponent(list(rows.values()), column) for column in ("still", "waves")]
+        console.print(
+            f"{name}: time grows as triangles^{slopes[0]:.2f} on still water, ^{slopes[1]:.2f} in waves, from {LARGE:,} up"
+        )
+
+
+def plot(path: Path, measured: dict[str, dict[str, dict[str, float]]]) -> None:
+    """Time against triangles of the sphere, with the fitted exponents."""
+    from matplotlib.figure import Figure
+
+    rows = list(measured["sphere"].values())
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axes = figure.add_subplot()
+    for column, label in (("still", "still water"), ("waves", "in waves"), *((peer, peer) for peer in PEERS)):
+        points = [(row["triangles"], row[column] * 1e6) for row in rows if column in row]
+        if points:
+            fitted = exponent(rows, column)
+            told = f"{label}, n^{fitted:.2f}" if np.isfinite(fitted) else label
+            axes.loglog(*zip(*points, strict=True), marker="o", lw=2.5 if column in ("still", "waves") else 1.2, label=told)
+    axes.set(xlabel="triangles", ylabel="time of one submersion [us]", title="a sphere in random attitudes")
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+    figure.savefig(path, dpi=110)
+
+
 def flat(results: dict, prefix: str = "") -> dict[str, float]:
     """Nested results as one table."""
     rows = {}
@@ -136,55 +268,59 @@ def flat(results: dict, prefix: str = "") -> dict[str, float]:
 
 def main() -> None:
     """Measure, print, save, compare."""
+    sections = ("submersion", "tree", "step", "batch", "real_time", "first_step")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer sizes and repeats")
+    parser.add_argument("--only", nargs="+", choices=sections, default=sections, help="measure these alone")
+    parser.add_argument("--plot", type=Path, help="draw time against triangles into this picture")
     parser.add_argument("--save", type=Path, help="write the measurements to this JSON file")
     parser.add_argument("--compare", type=Path, help="set them beside those of this JSON file")
     options = parser.parse_args()
     least = 0.05 if options.quick else 0.5
-    console = Console()
+    console = Console(width=140)
+    results: dict = {}
 
-    sizes = [submersions(n, least) for n in ((2, 4) if options.quick else (2, 3, 4, 5, 6))]
-    table = Table(title="one submersion of a sphere, median")
-    for column in ("triangles", "still water", "waves", "trimesh slice", "x", "scipy hull", "x"):
-        table.add_column(column, justify="right")
-    for row in sizes:
-        table.add_row(
-            f"{row['triangles']:,.0f}",
-            f"{row['still'] * 1e6:,.0f} us",
-            f"{row['waves'] * 1e6:,.0f} us",
-            f"{row['trimesh'] * 1e6:,.0f} us",
-            f"{row['trimesh'] / row['still']:,.0f}",
-            f"{row['hull'] * 1e6:,.0f} us",
-            f"{row['hull'] / row['still']:,.0f}",
-        )
-    console.print(table)
-
-    trees = [tree_ratios(20 * 4**n, least) for n in ((4,) if options.quick else (4, 5, 6))]
-    table = Table(title="time with the tree over time without, same mesh and poses")
-    for column in trees[0]:
-        table.add_column(column, justify="right")
-    for row in trees:
-        table.add_row(f"{row['triangles']:,.0f}", *(f"{row[column]:.2f}" for column in row if column != "triangles"))
-    console.print(table)
-
-    steps = {name: scene_step(name, least) for name in ("auv_drop_still", "auv_waves")}
-    for name, step in steps.items():
-        ratio = step["with"] / step["without"]
+    if "submersion" in options.only:
+        measured: dict[str, dict[str, dict[str, float]]] = {}
+        for name, solid in solids(options.quick):
+            measured.setdefault(name, {})[f"{len(solid.faces)}"] = submersions(solid, least)
+        tell_submersions(console, measured)
+        results["submersion"] = measured
+        if options.plot:
+            plot(options.plot, measured)
+    if "tree" in options.only:
+        trees = [tree_ratios(20 * 4**n, least) for n in ((4,) if options.quick else (2, 3, 4, 5, 6))]
+        table = Table(title="time by the tree where it is chosen, over time without, same mesh and poses")
+        for column in trees[0]:
+            table.add_column(column, justify="right")
+        for row in trees:
+            table.add_row(f"{row['triangles']:,.0f}", *(f"{row[column]:.2f}" for column in row if column != "triangles"))
+        console.print(table)
+        results["tree"] = {f"{row['triangles']:.0f}": row for row in trees}
+    if "step" in options.only:
+        results["step"] = {name: scene_steps(name) for name in ("auv_drop_still", "auv_pool", "auv_waves")}
+        for name, step in results["step"].items():
+            console.print(
+                f"mean step of {name}: {step['with'] * 1e6:.1f} us with water, {step['without'] * 1e6:.1f} us without, "
+                f"{step['with'] / step['without']:.1f} x"
+            )
+    if "batch" in options.only:
+        results["batch"] = {name: batches(name, 64) for name in ("auv_drop_still", "auv_waves")}
+        for name, factors in results["batch"].items():
+            console.print(
+                f"64 of {name} in a batch: {factors['1 threads']:,.0f} x real time on one thread, "
+                f"{factors['2 threads']:,.0f} x on two, {factors['2 threads'] / factors['1 threads']:.2f} x"
+            )
+    if "real_time" in options.only:
+        results["real_time"] = real_time_factors("auv_waves")
         console.print(
-            f"step of {name}: {step['with'] * 1e6:.0f} us with water, {step['without'] * 1e6:.0f} us without, {ratio:.1f} x"
+            f"auv_waves: {results['real_time']['headless']:.1f} x real time headless, "
+            f"{results['real_time']['recorded']:.1f} x recorded at 60 Hz"
         )
-    factors = real_time_factors("auv_waves")
-    console.print(
-        f"auv_waves: {factors['headless']:.1f} x real time headless, {factors['recorded']:.1f} x recorded at 60 Hz"
-    )
+    if "first_step" in options.only:
+        results["first_step"] = first_step()
+        console.print(f"from a fresh interpreter through the first step of auv_waves: {results['first_step']:.2f} s")
 
-    results = {
-        "submersion": {f"{row['triangles']:.0f}": row for row in sizes},
-        "tree": {f"{row['triangles']:.0f}": row for row in trees},
-        "step": steps,
-        "real_time": factors,
-    }
     if options.compare:
         before = flat(json.loads(options.compare.read_text()))
         for key, value in flat(results).items():

@@ -70,7 +70,7 @@ def test_a_tree_holds_each_triangle_in_one_leaf_and_each_corner_in_its_boxes(nam
     ]
     assert whole[0] == whole[1]
     leaves = np.flatnonzero(skip == np.arange(len(skip)) + 1)
-    assert (last[leaves] - first[leaves] <= tree.LEAF).all()
+    assert (last[leaves] - first[leaves] <= tree.LEAVES[0]).all()
     assert first[leaves[0]] == 0
     assert last[leaves[-1]] == len(faces)
     np.testing.assert_array_equal(first[leaves[1:]], last[leaves[:-1]])
@@ -127,7 +127,7 @@ def test_on_a_level_surface_the_tree_is_the_plain_way(name, water, pair):
 def test_in_waves_it_stays_within_its_tolerance(name, pair, monkeypatch):
     mesh = subdivided(MESHES[name], 1)
     # small leaves, so that there are nodes small enough to answer
-    monkeypatch.setattr(tree, "LEAF", 4)
+    monkeypatch.setattr(tree, "LEAVES", (4,))
     plain, quick = pair(mesh, WAVES)
     worst = 0.0
     for seed in range(20):
@@ -145,7 +145,7 @@ def test_in_waves_it_stays_within_its_tolerance(name, pair, monkeypatch):
 
 
 def test_a_long_body_in_short_waves_stays_within_it_too(pair, monkeypatch):
-    monkeypatch.setattr(tree, "LEAF", 4)
+    monkeypatch.setattr(tree, "LEAVES", (4,))
     plain, quick = pair(BEAM, Water(waves=RegularWave(0.03, wavelength=1.5)))
     turn = naive.roll(0.2)
     for time in np.linspace(0.0, 1.0, 7):
@@ -160,7 +160,7 @@ def test_a_long_body_in_short_waves_stays_within_it_too(pair, monkeypatch):
 def test_a_smaller_tolerance_is_kept_too(seed, height, tolerance):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tree, "TREE_TOLERANCE", tolerance)
-        patch.setattr(tree, "LEAF", 4)
+        patch.setattr(tree, "LEAVES", (4,))
         mesh = MESHES["torus"]
         plain, quick = (packed(mesh, WAVES, patch, few=few) for few in (10**9, 0))
         pose = place(mesh, seed, height)

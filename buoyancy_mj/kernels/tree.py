@@ -23,7 +23,10 @@ MOMENTS = 31
 
 @njit(cache=True)
 def build(corners, leaf, order, spans):
-    """Sort triangles into a tree by halves along the widest side of their middles.
+    """Sort triangles into a tree: the two sides of what is thin apart, else by halves along the widest side of their middles.
+
+    Thin is what is a quarter as wide along one axis as along the next; a plate that lies in the
+    surface would else be under and above it in every box.
 
     Args:
         corners: of the triangles (n, 3, 3).
@@ -42,6 +45,7 @@ def build(corners, leaf, order, spans):
     # ranges still to be done, the next on top
     lows, highs = np.empty(128, np.int64), np.empty(128, np.int64)
     lows[0], highs[0], top, count = 0, n, 1, 0
+    widths = np.empty(3)
     while top:
         top -= 1
         low, high = lows[top], highs[top]
@@ -50,13 +54,25 @@ def build(corners, leaf, order, spans):
         if high - low <= leaf:
             continue
         part = order[low:high].copy()
-        axis, widest = 0, -1.0
         for k in range(3):
-            width = middles[part, k].max() - middles[part, k].min()
-            if width > widest:
-                axis, widest = k, width
-        order[low:high] = part[np.argsort(middles[part, axis])]
-        half = (low + high) // 2
+            widths[k] = middles[part, k].max() - middles[part, k].min()
+        thin, widest = np.argmin(widths), np.argmax(widths)
+        half = low
+        if 4.0 * widths[thin] < widths[3 - thin - widest]:
+            for i in part:
+                if _faces_along(corners[i], thin):
+                    order[half] = i
+                    half += 1
+            behind = half
+            for i in part:
+                if not _faces_along(corners[i], thin):
+                    order[behind] = i
+                    behind += 1
+        # where nearly all face one way there are no two sides
+        if min(half - low, high - half) < (high - low) // 4:
+            # stable, so that what lies side by side stays so
+            order[low:high] = part[np.argsort(middles[part, widest], kind="mergesort")]
+            half = (low + high) // 2
         lows[top], highs[top] = half, high
         lows[top + 1], highs[top + 1] = low, half
         top += 2
@@ -67,6 +83,14 @@ def build(corners, leaf, order, spans):
             after = spans[after, 4]
         spans[node, 4] = after
     return count
+
+
+@njit(cache=True)
+def _faces_along(corners, k):
+    """Whether the normal of a triangle (3, 3) points along an axis rather than against it."""
+    p, q = (k + 1) % 3, (k + 2) % 3
+    across = (corners[1, p] - corners[0, p]) * (corners[2, q] - corners[0, q])
+    return across > (corners[1, q] - corners[0, q]) * (corners[2, p] - corners[0, p])
 
 
 @njit(cache=True)
