@@ -171,12 +171,6 @@ class Water:
         rows = self.rows
         return float(np.sum(np.abs(rows[:, 0]) * (rows[:, 1] ** 2 + rows[:, 2] ** 2)))
 
-    @functools.cached_property
-    def twist(self) -> float:
-        """Bound of the surface's third derivative, sum of A k^3 [1/m^2]."""
-        rows = self.rows
-        return float(np.sum(np.abs(rows[:, 0]) * np.hypot(rows[:, 1], rows[:, 2]) ** 3))
-
     def elevation(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
         """Height of the surface [m], world frame, at points x, y (any shape) [m] and a time [s]."""
         xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, exact, shapes, submerge, submersion, tree
+from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, exact, shapes, submerge, submersion
 from buoyancy_mj.mesh import refined
 from tests import naive
 from tests.naive import trimesh_hull
@@ -253,27 +253,21 @@ def test_twelve_triangles_in_a_wave_displace_what_columns_of_water_do(wavelength
 
 
 @pytest.mark.parametrize("name", ["box", "plate", "rod", *ODD])
-def test_in_steep_waves_four_hulls_long_the_error_is_below_half_a_thousandth(name, monkeypatch):
+def test_in_steep_waves_four_hulls_long_the_error_is_below_a_ten_thousandth(name):
     flat = {"box": (1.0, 0.5, 0.3), "plate": (1.0, 1.0, 0.01), "rod": (1.0, 0.03, 0.03)}
     mesh = shapes.box(flat[name]) if name in flat else ODD[name]
     wavelength = 8.0 * mesh.radius
     water = Water(waves=RegularWave(0.07 * wavelength, wavelength=wavelength))
-    packed = exact.PackedHulls([mesh], [0], [0], water)
-    # a mesh at least ten times finer
-    monkeypatch.setattr(exact, "WAVE_TOLERANCE", exact.WAVE_TOLERANCE / 150.0)
-    monkeypatch.setattr(exact, "MOST_TRIANGLES", 10**9)
-    monkeypatch.setattr(tree, "FEW", 10**9)
-    reference = exact.PackedHulls([mesh], [0], [0], water)
-    assert len(reference._faces) > 10 * len(packed._faces)
+    packed, reference = (exact.PackedHulls([mesh], [0], [0], water, tolerance) for tolerance in (2e-3, 2e-5))
     for seed in range(20):
         rng = np.random.default_rng(seed)
         position = rng.uniform(-1.0, 1.0, (1, 3)) * [[wavelength, wavelength, 0.5 * mesh.radius]]
         turn = turned(seed).reshape(1, 9)
         rough, fine = packed.submerge(position, turn, 0.0)[0].copy(), reference.submerge(position, turn, 0.0)[0].copy()
-        assert rough[0] == pytest.approx(fine[0], abs=5e-4 * mesh.volume)
+        assert rough[0] == pytest.approx(fine[0], abs=1e-4 * mesh.volume)
         if fine[0] > 0.0 and rough[0] > 0.0:
             error = fine[0] * np.abs(rough[1:4] - fine[1:4]).max()
-            assert error < 5e-4 * mesh.volume * 2.0 * mesh.radius
+            assert error < 1e-4 * mesh.volume * mesh.radius
 
 
 def test_a_hull_wholly_under_a_wave_is_whole():
@@ -298,18 +292,6 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
         assert wet.volume == 0.0
     else:
         assert 0.0 <= wet.volume <= mesh.volume
-
-
-@pytest.mark.parametrize("length", [2.0, 4.0, 10.0, 50.0])
-def test_long_slender_hulls_stay_cheap_in_waves(length):
-    water = Water(waves=RegularWave(0.3, frequency=0.5))
-    cylinder = shapes.cylinder(0.1, length / 2.0)
-    edge = exact.longest_edge(cylinder.volume, cylinder.area, water)
-    packed = exact.PackedHulls([cylinder], [0], [0], water)
-    # a few triangles for every edge length of each of the 64 facets
-    assert len(packed._faces) < 64 * 6 * (length / edge + 2.0)
-    beam = exact.PackedHulls([shapes.box((50.0, 0.01, 0.01))], [0], [0], water)
-    assert len(beam._faces) < exact.MOST_TRIANGLES
 
 
 # borders --------------------------------------------------------------------------------------------

@@ -5,8 +5,16 @@ the surface, so by Gauss
 
     V = - int d n_z dA,   int x dV = - int x d n_z dA,   int z dV = - int (z + d/2) d n_z dA
 
-over the wet side of the mesh alone. With d linear on a triangle the integrands are quadratic, and
-the integral of a product of linear functions f, g over a triangle of area a is exactly
+over the wet side of the mesh alone. In waves the elevation is that of the plane that touches the
+surface over the middle of the hull, and a rest e(x, y). The field (0, 0, e) has no divergence, so
+what e adds on the wet side it adds on the waterplane, and there alone it needs to be summed:
+
+    V = - int d n_z dA + int e dxdy,   int x dV = - int x d n_z dA + int x e dxdy,
+    int z dV = - int (z + d/2) d n_z dA + int (p + e/2) e dxdy
+
+with d the depth under the plane, p its height, and the last integrals over the waterplane, whose
+outline is where the triangles are cut. d is linear, so the integrands over triangles are quadratic,
+and the integral of a product of linear functions f, g over a triangle of area a is exactly
 a (sum f sum g + sum f g) / 12. All of it is summed in the frame of the hull, where the vertices
 stand still and the vertical leans.
 """
@@ -15,7 +23,7 @@ import math
 
 from numba import njit
 
-from buoyancy_mj.kernels.waves import SHORT, elevation, short_sincos
+from buoyancy_mj.kernels.waves import bend, doublings, elevation
 
 # columns of one row of results
 VOLUME, CENTROID, WETTED_AREA, WATERPLANE_AREA, COLUMNS = 0, slice(1, 4), 4, 5, 6
@@ -36,24 +44,31 @@ def _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
 
 
 @njit(cache=True)
-def _cut(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
-    """`_moments` of the wet part of a triangle with one or two wet corners, and the fraction of its area that is wet."""
-    wet0, wet1, wet2 = d0 > 0.0, d1 > 0.0, d2 > 0.0
+def _cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
+    """The wet part of a triangle that the surface cuts, by the depths w of its corners.
+
+    Gives `_moments`, the fraction of its area, and the two ends of the cut, such that the waterplane
+    lies to the left of the way from the first to the second, seen from above.
+    """
+    wet0, wet1, wet2 = w0 > 0.0, w1 > 0.0, w2 > 0.0
     # turn the triangle so that corner 0 is alone on its side
     alone = int(wet0) + int(wet1) + int(wet2) == 1
     if wet1 == alone and wet0 != alone and wet2 != alone:
         x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = x1, y1, z1, d1, x2, y2, z2, d2, x0, y0, z0, d0
+        w0, w1, w2 = w1, w2, w0
     elif wet2 == alone and wet0 != alone and wet1 != alone:
         x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = x2, y2, z2, d2, x0, y0, z0, d0, x1, y1, z1, d1
+        w0, w1, w2 = w2, w0, w1
     # where its two edges meet the surface
-    s, t = d0 / (d0 - d1), d0 / (d0 - d2)
-    px, py, pz = x0 + s * (x1 - x0), y0 + s * (y1 - y0), z0 + s * (z1 - z0)
-    qx, qy, qz = x0 + t * (x2 - x0), y0 + t * (y2 - y0), z0 + t * (z2 - z0)
+    s, t = w0 / (w0 - w1), w0 / (w0 - w2)
+    px, py, pz, pd = x0 + s * (x1 - x0), y0 + s * (y1 - y0), z0 + s * (z1 - z0), d0 + s * (d1 - d0)
+    qx, qy, qz, qd = x0 + t * (x2 - x0), y0 + t * (y2 - y0), z0 + t * (z2 - z0), d0 + t * (d2 - d0)
     if alone:
-        return _moments(s * t * a, x0, y0, z0, d0, px, py, pz, 0.0, qx, qy, qz, 0.0), s * t
-    v, mx, my, mz, w = _moments((1.0 - s) * a, px, py, pz, 0.0, x1, y1, z1, d1, x2, y2, z2, d2)
-    u, nx, ny, nz, o = _moments(s * (1.0 - t) * a, px, py, pz, 0.0, x2, y2, z2, d2, qx, qy, qz, 0.0)
-    return (v + u, mx + nx, my + ny, mz + nz, w + o), 1.0 - s * t
+        part = _moments(s * t * a, x0, y0, z0, d0, px, py, pz, pd, qx, qy, qz, qd)
+        return part, s * t, (qx, qy, qz), (px, py, pz)
+    v, mx, my, mz, q = _moments((1.0 - s) * a, px, py, pz, pd, x1, y1, z1, d1, x2, y2, z2, d2)
+    u, nx, ny, nz, r = _moments(s * (1.0 - t) * a, px, py, pz, pd, x2, y2, z2, d2, qx, qy, qz, qd)
+    return (v + u, mx + nx, my + ny, mz + nz, q + r), 1.0 - s * t, (px, py, pz), (qx, qy, qz)
 
 
 @njit(cache=True, inline="always")
@@ -69,36 +84,6 @@ def _placed(origin, r, x, y, z):
     return origin[0] + tx, origin[1] + ty, origin[2] + tz
 
 
-@njit(cache=True)
-def _triangles(vertices, base, faces, areas, first, last, r, depths):
-    """`_moments` under the faces from `first` up to `last`, horizontal and wetted area; depths begin with vertex `base`."""
-    v = mx = my = mz = q = p = area = 0.0
-    up0, up1, up2 = r[6], r[7], r[8]
-    for f in range(first, last):
-        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-        d0, d1, d2 = depths[i - base], depths[j - base], depths[k - base]
-        if d0 <= 0.0 and d1 <= 0.0 and d2 <= 0.0:
-            continue
-        a = up0 * areas[f, 0] + up1 * areas[f, 1] + up2 * areas[f, 2]
-        x0, y0, z0 = vertices[i, 0], vertices[i, 1], vertices[i, 2]
-        x1, y1, z1 = vertices[j, 0], vertices[j, 1], vertices[j, 2]
-        x2, y2, z2 = vertices[k, 0], vertices[k, 1], vertices[k, 2]
-        if d0 > 0.0 and d1 > 0.0 and d2 > 0.0:
-            part = _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
-            p += a
-            area += areas[f, 3]
-        else:
-            part, fraction = _cut(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2)
-            p += fraction * a
-            area += fraction * areas[f, 3]
-        v += part[0]
-        mx += part[1]
-        my += part[2]
-        mz += part[3]
-        q += part[4]
-    return v, mx, my, mz, q, p, area
-
-
 @njit(cache=True, inline="always")
 def _vertical(m, k, r):
     """Three numbers of a row of moments, along the world's vertical."""
@@ -106,152 +91,189 @@ def _vertical(m, k, r):
 
 
 @njit(cache=True)
-def _approach(waves, origin, r, cx, cy, cz, radius, time, swell):
-    """Bring the waves to a hull, whose middle is c and half diagonal `radius`, in its own frame.
+def _approach(waves, origin, r, cx, cy, cz, time, swell):
+    """Bring the waves to a hull with its middle at c, in its own frame.
 
-    Rows of `swell` become A cos and A sin of the phase in the middle, and the wave vector. Gives
-    bounds of the surface's second and third derivatives, and whether phases differ by short angles.
+    Rows of `swell` become A cos and A sin of the phase over the middle, the wave vector in the hull's
+    frame (3), and in the world's (2). Gives the elevation there over the still level, its gradient in
+    the hull's frame, a bound of its curvature, and the largest wave number.
     """
-    curvature = twist = steepest = 0.0
+    eta = g0 = g1 = g2 = curvature = steepest = 0.0
     x, y, _ = _placed(origin, r, cx, cy, cz)
     for w in range(waves.shape[0]):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
         k = math.hypot(kx, ky)
-        curvature += abs(amplitude) * k * k
-        twist += abs(amplitude) * k * k * k
-        steepest = max(steepest, k)
         phase = kx * x + ky * y - waves[w, 3] * time + waves[w, 4]
-        row = swell[w]
-        row[0], row[1] = amplitude * math.cos(phase), amplitude * math.sin(phase)
-        row[2], row[3], row[4] = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
-    return curvature, twist, steepest * radius <= SHORT
+        crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
+        k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
+        swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4] = crest, slope, k0, k1, k2
+        swell[w, 5], swell[w, 6] = kx, ky
+        eta += crest
+        g0, g1, g2 = g0 - slope * k0, g1 - slope * k1, g2 - slope * k2
+        curvature += abs(amplitude) * k * k
+        steepest = max(steepest, k)
+    return eta, g0, g1, g2, curvature, steepest
 
 
 @njit(cache=True)
-def _depths(vertices, first, last, dry, r, cx, cy, cz, swell, waves, short, depths):
-    """Depths of vertices from `first` up to `last`; `dry` is the height of the still level over the hull's origin."""
-    for n in range(first, last):
-        depths[n - first] = dry - (r[6] * vertices[n, 0] + r[7] * vertices[n, 1] + r[8] * vertices[n, 2])
+def _add_rest(vertices, first, last, c0, c1, c2, swell, waves, doubled, depths):
+    """Add to depths under the plane, of vertices from `first` up to `last`, the rest of the elevation."""
     for w in range(waves):
-        c, s, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
-        middle = k0 * cx + k1 * cy + k2 * cz
-        if short:
-            for n in range(first, last):
-                sine, cosine = short_sincos(k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - middle)
-                depths[n - first] += c * cosine - s * sine
-        else:
-            for n in range(first, last):
-                angle = k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - middle
-                depths[n - first] += c * math.cos(angle) - s * math.sin(angle)
+        crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
+        middle = k0 * c0 + k1 * c1 + k2 * c2
+        for n in range(first, last):
+            sine, cosine = bend(k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - middle, doubled)
+            depths[n - first] += crest * cosine - slope * sine
+
+
+# Gauss-Legendre points and weights between 0 and 1
+_ONE = ((0.5, 1.0),)
+_TWO = ((0.5 - math.sqrt(1.0 / 12.0), 0.5), (0.5 + math.sqrt(1.0 / 12.0), 0.5))
+_FOUR = (
+    (0.06943184420297371, 0.17392742256872692),
+    (0.33000947820757187, 0.32607257743127308),
+    (0.66999052179242813, 0.32607257743127308),
+    (0.93056815579702629, 0.17392742256872692),
+)
+PANEL = 2.0
+"""Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
+SLIM = 1e-3
+"""Square of the ends' distance, over that of their distances from the middle, for which one point along a cut is enough."""
+
+
+@njit(cache=True)
+def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, panels, doubled):
+    """Of the rest e over the triangle from the middle of the hull to a cut p q, all seen from above.
+
+    Gives the integrals of e, x e, y e and (plane + e / 2) e. The plane has the `height` over the
+    middle, and a gradient g. By Gauss outward, in `panels` of at most `PANEL` / k, and along the cut.
+    """
+    i0 = ix = iy = iz = 0.0
+    apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
+    slim = apart <= SLIM * (px * px + py * py + qx * qx + qy * qy)
+    for n in range(1 if slim else 2):
+        along, share = _ONE[0] if slim else _TWO[n]
+        ex, ey = px + along * (qx - px), py + along * (qy - py)
+        for panel in range(panels):
+            for out, weight in _FOUR:
+                u = (panel + out) / panels
+                x, y = u * ex, u * ey
+                e = 0.0
+                for w in range(waves):
+                    sine, cosine = bend(swell[w, 5] * x + swell[w, 6] * y, doubled)
+                    e += swell[w, 0] * cosine - swell[w, 1] * sine
+                e_dA = u * weight * share / panels * e
+                i0 += e_dA
+                ix += x * e_dA
+                iy += y * e_dA
+                iz += (height + gx * x + gy * y + 0.5 * e) * e_dA
+    whole = px * qy - py * qx
+    return whole * i0, whole * ix, whole * iy, whole * iz
 
 
 @njit(cache=True)
 def _walk(
-    vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, slack, middle, depths, swell
+    vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, middle, depths, swell
 ):  # fmt: skip
     """Volume, first moments about the origin, horizontal and wetted area under the nodes from `start` up to `end`.
 
-    Triangles are visited at the surface alone. Under a node small enough for it the depth is taken
-    as d + g y + y H y / 2 about the middle a of its box, y = x - a, with the gradient g and the
-    curvature H of the surface there; on still water that is the depth itself, everywhere. Nodes in
-    it that are wholly wet, and small enough for that, are answered by their moments, which lack what
-    is of third order in y. How small, `tree.slack` says.
+    Triangles are visited at the surface alone: nodes that are wholly wet are answered by their moments.
     """
-    v = lx = ly = lz = q = p = area = 0.0
-    x0, x1, x2 = middle[0], middle[1], middle[2]
-    radius = math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
-    curvature, twist, short = _approach(waves, origin, r, x0, x1, x2, radius, time, swell)
-    dry = level - origin[2]
-    # the depth about a, which holds for nodes before `until`
-    until = start
-    a0 = a1 = a2 = d = g0 = g1 = g2 = h00 = h11 = h22 = h01 = h02 = h12 = 0.0
+    v = lx = ly = lz = q = p = area = i0 = ix = iy = iz = 0.0
+    many = waves.shape[0]
+    c0, c1, c2 = middle[0], middle[1], middle[2]
+    eta, s0, s1, s2, curvature, steepest = _approach(waves, origin, r, c0, c1, c2, time, swell)
+    reach = steepest * math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
+    doubled, panels = doublings(reach), max(1, math.ceil(reach / PANEL))
+    # the plane, as the depth under it: d + g (x - c)
+    g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
+    d = level + eta - origin[2] - (r[6] * c0 + r[7] * c1 + r[8] * c2)
+    height = level + eta - origin[2]
+    gx, gy, _ = _turned(r, s0, s1, s2)
     i = start
     while i < end:
-        cx, cy, cz = boxes[i, 0], boxes[i, 1], boxes[i, 2]
-        ex, ey, ez = boxes[i, 3], boxes[i, 4], boxes[i, 5]
-        squared = ex * ex + ey * ey + ez * ez
-        cubed = squared * math.sqrt(squared)
-        bend = 0.5 * curvature * squared
-        if i >= until:
-            a0, a1, a2 = cx, cy, cz
-            d = dry - (r[6] * cx + r[7] * cy + r[8] * cz)
-            g0, g1, g2 = -r[6], -r[7], -r[8]
-            h00 = h11 = h22 = h01 = h02 = h12 = 0.0
-            for w in range(waves.shape[0]):
-                k0, k1, k2 = swell[w, 2], swell[w, 3], swell[w, 4]
-                angle = k0 * (cx - x0) + k1 * (cy - x1) + k2 * (cz - x2)
-                sine, cosine = short_sincos(angle) if short else (math.sin(angle), math.cos(angle))
-                crest, slope = swell[w, 0] * cosine - swell[w, 1] * sine, swell[w, 1] * cosine + swell[w, 0] * sine
-                d += crest
-                g0 -= slope * k0
-                g1 -= slope * k1
-                g2 -= slope * k2
-                h00 -= crest * k0 * k0
-                h11 -= crest * k1 * k1
-                h22 -= crest * k2 * k2
-                h01 -= crest * k0 * k1
-                h02 -= crest * k0 * k2
-                h12 -= crest * k1 * k2
-            if twist * cubed <= 6.0 * slack[0]:
-                until = spans[i, 4]
-        # about the middle of this node
-        y0, y1, y2 = cx - a0, cy - a1, cz - a2
-        w0, w1, w2 = h00 * y0 + h01 * y1 + h02 * y2, h01 * y0 + h11 * y1 + h12 * y2, h02 * y0 + h12 * y1 + h22 * y2
-        depth = d + (g0 + 0.5 * w0) * y0 + (g1 + 0.5 * w1) * y1 + (g2 + 0.5 * w2) * y2
-        b0, b1, b2 = g0 + w0, g1 + w1, g2 + w2
-        reach = abs(b0) * ex + abs(b1) * ey + abs(b2) * ez + bend
+        b0, b1, b2 = boxes[i, 0], boxes[i, 1], boxes[i, 2]
+        e0, e1, e2 = boxes[i, 3], boxes[i, 4], boxes[i, 5]
+        y0, y1, y2 = b0 - c0, b1 - c1, b2 - c2
+        plane = d + g0 * y0 + g1 * y1 + g2 * y2
+        # the depth of the middle of the box, and how much less or more any point of it has
+        depth, h0, h1, h2 = plane, g0, g1, g2
+        for w in range(many):
+            crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
+            angle = k0 * y0 + k1 * y1 + k2 * y2
+            sine, cosine = bend(angle, doubled)
+            depth += crest * cosine - slope * sine
+            change = -slope * cosine - crest * (sine + angle)
+            h0, h1, h2 = h0 + change * k0, h1 + change * k1, h2 + change * k2
+        reach = abs(h0) * e0 + abs(h1) * e1 + abs(h2) * e2 + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
         after = spans[i, 4]
         if depth <= -reach:
             i = after
             continue
-        wet = depth >= reach
-        if wet and i < until and curvature * cubed <= 2.0 * slack[1]:
+        if depth >= reach:
             m = moments[i]
             # contracted with the vertical
             s = _vertical(m, 0, r)
             t0, t1, t2 = _vertical(m, 3, r), _vertical(m, 6, r), _vertical(m, 9, r)
             u00, u11, u22 = _vertical(m, 12, r), _vertical(m, 15, r), _vertical(m, 18, r)
             u01, u02, u12 = _vertical(m, 21, r), _vertical(m, 24, r), _vertical(m, 27, r)
-            bent = 0.5 * (h00 * u00 + h11 * u11 + h22 * u22) + h01 * u01 + h02 * u02 + h12 * u12
-            tilted = b0 * t0 + b1 * t1 + b2 * t2
-            n0 = b0 * u00 + b1 * u01 + b2 * u02
-            n1 = b0 * u01 + b1 * u11 + b2 * u12
-            n2 = b0 * u02 + b1 * u12 + b2 * u22
-            part = depth * s + tilted + bent
+            tilted = g0 * t0 + g1 * t1 + g2 * t2
+            n0 = g0 * u00 + g1 * u01 + g2 * u02
+            n1 = g0 * u01 + g1 * u11 + g2 * u12
+            n2 = g0 * u02 + g1 * u12 + g2 * u22
+            part = plane * s + tilted
             v += part
-            lx += cx * part + depth * t0 + n0
-            ly += cy * part + depth * t1 + n1
-            lz += cz * part + depth * t2 + n2
-            q += depth * (depth * s + 2.0 * (tilted + bent)) + b0 * n0 + b1 * n1 + b2 * n2
+            lx += b0 * part + plane * t0 + n0
+            ly += b1 * part + plane * t1 + n1
+            lz += b2 * part + plane * t2 + n2
+            q += plane * (part + tilted) + g0 * n0 + g1 * n1 + g2 * n2
             p += s
             area += m[30]
             i = after
             continue
-        # down the tree, unless it ends here, or all below is wet too and too large to answer
-        if after > i + 1 and not (wet and curvature * boxes[i, 6] > 2.0 * slack[1]):
+        if after > i + 1:
             i += 1
             continue
         base, top = spans[i, 2], spans[i, 3]
-        if i < until:
-            for n in range(base, top):
-                y0, y1, y2 = vertices[n, 0] - a0, vertices[n, 1] - a1, vertices[n, 2] - a2
-                w0 = g0 + 0.5 * (h00 * y0 + h01 * y1 + h02 * y2)
-                w1 = g1 + 0.5 * (h01 * y0 + h11 * y1 + h12 * y2)
-                w2 = g2 + 0.5 * (h02 * y0 + h12 * y1 + h22 * y2)
-                depths[n - base] = d + w0 * y0 + w1 * y1 + w2 * y2
-        else:
-            _depths(vertices, base, top, dry, r, x0, x1, x2, swell, waves.shape[0], short, depths)
-        some = _triangles(vertices, base, faces, areas, spans[i, 0], spans[i, 1], r, depths)
-        v += some[0]
-        lx += some[1]
-        ly += some[2]
-        lz += some[3]
-        q += some[4]
-        p += some[5]
-        area += some[6]
+        still = d - (g0 * c0 + g1 * c1 + g2 * c2)
+        for n in range(base, top):
+            depths[n - base] = still + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
+        if many:
+            _add_rest(vertices, base, top, c0, c1, c2, swell, many, doubled, depths)
+        for f in range(spans[i, 0], spans[i, 1]):
+            j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
+            w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]
+            if w0 <= 0.0 and w1 <= 0.0 and w2 <= 0.0:
+                continue
+            a = r[6] * areas[f, 0] + r[7] * areas[f, 1] + r[8] * areas[f, 2]
+            x0, y0, z0 = vertices[j, 0], vertices[j, 1], vertices[j, 2]
+            x1, y1, z1 = vertices[k, 0], vertices[k, 1], vertices[k, 2]
+            x2, y2, z2 = vertices[o, 0], vertices[o, 1], vertices[o, 2]
+            d0, d1, d2 = w0, w1, w2
+            if many:
+                d0 = still + g0 * x0 + g1 * y0 + g2 * z0
+                d1 = still + g0 * x1 + g1 * y1 + g2 * z1
+                d2 = still + g0 * x2 + g1 * y2 + g2 * z2
+            if w0 > 0.0 and w1 > 0.0 and w2 > 0.0:
+                some, fraction = _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2), 1.0
+            else:
+                some, fraction, one, other = _cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2)
+                if many:
+                    px, py, _ = _turned(r, one[0] - c0, one[1] - c1, one[2] - c2)
+                    qx, qy, _ = _turned(r, other[0] - c0, other[1] - c1, other[2] - c2)
+                    rest = _waterplane(px, py, qx, qy, height, gx, gy, swell, many, panels, doubled)
+                    i0, ix, iy, iz = i0 + rest[0], ix + rest[1], iy + rest[2], iz + rest[3]
+            v += some[0]
+            lx += some[1]
+            ly += some[2]
+            lz += some[3]
+            q += some[4]
+            p += fraction * a
+            area += fraction * areas[f, 3]
         i = after
     mx, my, mz = _turned(r, lx, ly, lz)
-    return -v, -mx, -my, -mz - 0.5 * q, -p, area
+    cx, cy, _ = _turned(r, c0, c1, c2)
+    return i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q, -p, area
 
 
 @njit(cache=True)
@@ -275,9 +297,8 @@ def submerge_hulls(
     areas,  # (f, 4) vector area of each face, and its length
     nodes,  # (h + 1,) first node of each hull
     spans,  # (n, 5) of the nodes: first face and last, first vertex and last, the node behind all below; see `tree`
-    boxes,  # (n, 7)
+    boxes,  # (n, 6)
     moments,  # (n, 31)
-    slacks,  # (h, 2) see `tree.slack`
     whole,  # (h, 11) volume, centroid, area of each whole hull, middle and half sides of its bounding box
     frames,  # (h,) row of each hull in positions and rotations
     positions,  # (n, 3) of the frames in the world
@@ -286,7 +307,7 @@ def submerge_hulls(
     waves,  # (w, 6)
     time,
     depths,  # scratch, as long as the most vertices of a hull
-    swell,  # (w, 5) scratch
+    swell,  # (w, 7) scratch
     out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
 ):
     """The submersion of each hull; only hulls that the surface may cut cost more than a few operations."""
@@ -314,7 +335,7 @@ def submerge_hulls(
         if depth <= -reach:
             continue
         v, mx, my, mz, p, area = _walk(
-            vertices, faces, areas, spans, boxes, moments, nodes[h], nodes[h + 1], origin, r, level, waves, time, slacks[h],
+            vertices, faces, areas, spans, boxes, moments, nodes[h], nodes[h + 1], origin, r, level, waves, time,
             whole[h, 5:], depths, swell,
         )  # fmt: skip
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of

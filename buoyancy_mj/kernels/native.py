@@ -16,7 +16,7 @@ from buoyancy_mj.kernels import clip, wrenches
 
 Water = IntEnum(
     "Water",
-    "vertices faces areas nodes spans boxes moments slacks whole frames waves "
+    "vertices faces areas nodes spans boxes moments whole frames waves "
     "owners bodies damped volumes linear quadratic members member_starts sea current offsets pool links",
     start=0,
 )
@@ -183,7 +183,6 @@ def _evaluate(model, data, water, scratch, record):
             _spans(water, Water.spans),
             _grid(water, Water.boxes),
             _grid(water, Water.moments),
-            _grid(water, Water.slacks),
             _grid(water, Water.whole),
             _words(water, Water.frames),
             _doubles(word(data + offsets[Offset.geom_xpos]), ngeom, 3),

@@ -23,7 +23,7 @@ MOMENTS = 31
 
 @njit(cache=True)
 def build(corners, leaf, order, spans):
-    """Sort triangles into a tree: the two sides of what is thin apart, else by halves along the widest side of their middles.
+    """Sort triangles into a tree: the sides of what is thin apart, else by halves along the widest side of their middles.
 
     Thin is what is a quarter as wide along one axis as along the next; a plate that lies in the
     surface would else be under and above it in every box.
@@ -128,11 +128,7 @@ def spread(faces, spans, vertices, picked):
 
 @njit(cache=True)
 def measure(corners, spans, boxes, moments):
-    """Boxes (nodes, 7) and moments (nodes, 31) of triangles (n, 3, 3) in the order of the tree.
-
-    A box is its middle, its half sides, and the cube of the smallest half diagonal among it and the
-    boxes below.
-    """
+    """Boxes (nodes, 6), their middles and half sides, and moments (nodes, 31) of triangles (n, 3, 3) in the tree's order."""
     moments[:, :] = 0.0
     y = np.empty((3, 3))
     total = np.empty(3)
@@ -162,10 +158,3 @@ def measure(corners, spans, boxes, moments):
                     mean = total[a] * total[b] + y[0, a] * y[0, b] + y[1, a] * y[1, b] + y[2, a] * y[2, b]
                     row[12 + 3 * m + k] += mean / 12.0 * area[k]
             row[30] += math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2)
-    for node in range(spans.shape[0] - 1, -1, -1):
-        least = (boxes[node, 3] ** 2 + boxes[node, 4] ** 2 + boxes[node, 5] ** 2) ** 1.5
-        child = node + 1
-        while child < spans[node, 4]:
-            least = min(least, boxes[child, 6])
-            child = spans[child, 4]
-        boxes[node, 6] = least
