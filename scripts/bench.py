@@ -115,7 +115,7 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
 
 def exponent(rows: list[dict[str, float]], column: str) -> float:
     """Of the power law through times against triangles, from `LARGE` ones up."""
-    points = np.log([(row["triangles"], row[column]) for row in rows if row["triangles"] >= LARGE])
+    points = np.log([(row["triangles"], row[column]) for row in rows if column in row and row["triangles"] >= LARGE])
     return float(np.polyfit(*points.T, 1)[0]) if len(points) > 1 else float("nan")
 
 
@@ -125,7 +125,10 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
     plate = trimesh.creation.box([0.8, 0.6, 0.01])
     while len(plate.faces) < triangles / 2:
         plate = plate.subdivide()
-    still, waves = Water(), Water(waves=RegularWave(0.05, wavelength=5.0))
+    swell = RegularWave(0.05, wavelength=5.0)
+    still, waves = Water(), Water(waves=swell)
+    # when it passes through the level in the middle
+    now = 0.25 * swell.period
     rows = {}
     for name, solid, turns in (("ball", ball, TURNS), ("plate", plate, [np.eye(3)] * len(TURNS))):
         for surface, water in (("still", still), ("waves", waves)):
@@ -141,7 +144,7 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
                 for turn in turns:
                     for way, hulls in enumerate(ways):
                         before = time.perf_counter()
-                        hulls.submerge(np.zeros((1, 3)), turn.reshape(1, 9), 0.0)
+                        hulls.submerge(np.zeros((1, 3)), turn.reshape(1, 9), now)
                         times[way].append(time.perf_counter() - before)
             rows[f"{name}, {surface}"] = statistics.median(times[0]) / statistics.median(times[1])
     return {"triangles": float(len(ball.faces))} | rows

@@ -69,7 +69,7 @@ def test_an_unknown_method_is_told(run):
     one_sentence(run("run", "auv_waves", "--method", "hull", "--no-record"), "unknown kind 'hull'; .*exact")
     one_sentence(
         run("run", "auv_waves", "--method", "exact", "--set", "method.cut=true", "--no-record"),
-        "unknown key 'cut'; possible: nothing",
+        "unknown key 'cut'; possible: tolerance",
     )
 
 

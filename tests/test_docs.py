@@ -4,21 +4,45 @@ import re
 import shlex
 from pathlib import Path
 
+import mujoco
 import pytest
 from typer.testing import CliRunner
 
-from buoyancy_mj import catalog
+from buoyancy_mj import catalog, water_in
 from buoyancy_mj.cli import app
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
 
 
-def test_the_ten_lines_run(tmp_path, monkeypatch, capsys):
-    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+@pytest.mark.parametrize(
+    ("code", "told"), [*zip(re.findall(r"```python\n(.*?)```", README, re.DOTALL), ["m^3 under water", "] N"], strict=True)]
+)
+def test_the_lines_of_python_run(code, told, capsys):
     vehicle = catalog.models()["sauvc_auv"]
     exec(compile(code.replace("my_auv.xml", vehicle.as_posix()), "README.md", "exec"), {})
-    assert "m^3 under water" in capsys.readouterr().out
+    assert told in capsys.readouterr().out
+
+
+def test_the_extension_in_the_readme_is_one():
+    (extension,) = re.findall(r"    <extension>.*?</extension>", README, re.DOTALL)
+    model = mujoco.MjModel.from_xml_string(
+        f"<mujoco>{extension}<worldbody><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>"
+    )
+    water = water_in(model).water
+    assert (water.density, len(water.waves), water.current) == (1025.0, 2, (0.2, 0.0, 0.0))
+
+
+@pytest.mark.parametrize("line", re.findall(r"\.venv/bin/buoyancy-mj (sweep .*)", README))
+def test_the_sweeps_are_understood(line, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = [re.sub(r":[67]$", ":1", word) for word in shlex.split(line)]
+    words[-1:] = [words[-1], "--duration", "0.02"]
+    if "--draws" in words:
+        words[words.index("--draws") + 1] = "2"
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 0, result.output
+    assert "0 failed" in result.output
 
 
 @pytest.mark.parametrize("line", re.findall(r"\.venv/bin/buoyancy-mj (run .*)", README))

@@ -85,7 +85,10 @@ def test_any_field_can_be_set(folder, setting, look):
 @pytest.mark.parametrize(
     ("setting", "message"),
     [
-        ("durations=2", "unknown key 'durations'; did you mean 'duration'? possible: cog_shift, drag, duration, environment"),
+        (
+            "durations=2",
+            "unknown key 'durations'; did you mean 'duration'? possible: cog_shift, drag, duration, environment",
+        ),
         ("water.densty=2", "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level"),
         ("water.waves.0.kind=choppy", "water.waves.0: unknown kind 'choppy'; possible: level, regular"),
         ("water.waves.5.amplitude=1", "cannot set 'water.waves.5': the list has 2 entries, counted from 0"),
