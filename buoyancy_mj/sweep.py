@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import functools
 import hashlib
 import itertools
 import math
@@ -16,6 +17,7 @@ import numpy as np
 from mujoco import batch
 from numpy.typing import NDArray
 
+from buoyancy_mj import catalog
 from buoyancy_mj.callbacks import plugin_instances
 from buoyancy_mj.errors import BuoyancyError, DivergenceError, SweepError
 from buoyancy_mj.frames import Summary
@@ -189,8 +191,10 @@ class Sweep:
         # parquet has no end to write to, so that a journal stands beside it until all is done
         journal = self.out if self.out.suffix == ".csv" else self.out.with_suffix(".partial.csv")
         known = _read_parquet(self.out) if self.out.suffix == ".parquet" and not journal.exists() else []
-        done = Journal(journal, self.keys, self._digest(), known)
+        done = Journal(journal, self.keys, self._digest, known)
         try:
+            self._compare(journal, done.rows)
+            self._check_fields()
             yield from done.rows.values()
             todo = [i for i in range(len(self.values)) if i not in done.rows]
             while todo:
@@ -205,9 +209,29 @@ class Sweep:
             _write_parquet(self.out, [done.rows[i] for i in sorted(done.rows)], done.header)
             journal.unlink()
 
+    def _compare(self, path: Path, rows: Mapping[int, Mapping[str, str]]) -> None:
+        """Refuse rows of runs that this sweep does not have, or has with other values."""
+        for run, row in rows.items():
+            if run >= len(self.values) or tuple(float(row[key]) for key in self.keys) != self.values[run]:
+                raise SweepError(f"'{path}' holds runs with other values; give another --out, or remove it")
+
+    def _check_fields(self) -> None:
+        """Tell at once what would be wrong with every run: a field that the scene lacks."""
+        errors = []
+        for run in {0, len(self.values) - 1}:
+            try:
+                self._scene(run)
+            except BuoyancyError as error:
+                errors.append(error)
+        if errors and len(errors) == len({0, len(self.values) - 1}) and "unknown key" in str(errors[0]):
+            raise errors[0]
+
+    @functools.cached_property
     def _digest(self) -> str:
         """In short, what all runs have in common."""
-        told = repr((self.path.read_bytes(), self.settings, self.keys))
+        scene = read_scene(self.path, self.settings)
+        vehicle = catalog.model_path(scene.vehicle, scene.folder)
+        told = repr((self.path.read_bytes(), vehicle.read_bytes(), self.settings, self.keys))
         return f"{self.path.stem} {hashlib.blake2b(told.encode(), digest_size=4).hexdigest()}"
 
     def _scene(self, run: int) -> Scene:
@@ -234,7 +258,7 @@ class Sweep:
                     yield self._row(run, simulation, reason)
 
     def _row(self, run: int, simulation: Simulation | None = None, reason: str = "") -> dict[str, Any]:
-        row = {"run": run, "scene": self._digest(), "status": "failed" if reason else "done", "reason": reason}
+        row = {"run": run, "scene": self._digest, "status": "failed" if reason else "done", "reason": reason}
         row |= dict(zip(self.keys, self.values[run], strict=True))
         told = dataclasses.asdict(simulation.summary()) if simulation and not reason else {}
         return row | {name: told.get(name) for name in _SUMMARY if name not in self.keys}

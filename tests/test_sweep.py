@@ -12,7 +12,7 @@ import pyarrow.parquet
 import pytest
 from typer.testing import CliRunner
 
-from buoyancy_mj import Simulation, SweepError, catalog, read_scene, sweep
+from buoyancy_mj import SceneError, Simulation, SweepError, catalog, read_scene, sweep
 from buoyancy_mj.cli import app
 from buoyancy_mj.sweep import Over, Sweep, draws, grid, parsed
 
@@ -135,6 +135,14 @@ def test_a_sweep_that_is_killed_goes_on(tmp_path):
     assert sorted(int(row["run"]) for row in read(out)) == list(range(100))
 
 
+def test_more_draws_of_the_same_seed_go_on_from_fewer(tmp_path):
+    over = [Over("mass", 15.0, 25.0, 0)]
+    few, more = (plan(tmp_path, "mass=15:25", values=draws(over, count, 3)) for count in (2, 4))
+    first = list(few.run())
+    assert list(more.run())[:2] == first
+    assert len(read(more.out)) == 4
+
+
 # failures -------------------------------------------------------------------------------------------
 
 
@@ -177,6 +185,11 @@ def test_sweeps_that_make_no_sense_are_told(tmp_path):
         list(plan(tmp_path, "start.yaw=0:1:2").run())
     with pytest.raises(SweepError, match="holds runs of another scene, or with other flags"):
         list(plan(tmp_path, "mass=20:21:2", settings=("duration=0.4",)).run())
+    for other in ("mass=20:22:2", "mass=20:20:1"):
+        with pytest.raises(SweepError, match="holds runs with other values; give another --out, or remove it"):
+            list(plan(tmp_path, other).run())
+    with pytest.raises(SceneError, match="unknown key 'mas'; did you mean 'mass'"):
+        list(plan(tmp_path, "mas=20:21:2", name="new.csv").run())
     (tmp_path / "folder.csv").mkdir()
     with pytest.raises(SweepError, match="cannot keep results in"):
         list(plan(tmp_path, "mass=20:21:2", name="folder.csv").run())
