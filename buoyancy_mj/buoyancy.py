@@ -161,8 +161,12 @@ class Buoyancy:
             record = self.native.last_record(data._address) if "native" in self.__dict__ else None
             if record is None and self._last_data == data._address:
                 record = self._record
-            if record is None:
-                raise EngineError("this water has not acted on these data; step them while it is installed, or use evaluate")
+            # a pass lies no more than a step back; what is older was of other data in the same place
+            if record is None or not abs(data.time - record.instant[0]) <= 1.001 * self.model.opt.timestep:
+                raise EngineError(
+                    f"this water has not acted on these data at their time, {data.time:g} s; step them while it acts, "
+                    "call mj_forward, or use evaluate"
+                )
             return self.loads_of(record, data)
 
     def loads_of(self, record: Record, data: mujoco.MjData) -> Loads:
@@ -209,6 +213,7 @@ class Buoyancy:
     def _compute(self, data: mujoco.MjData, run: int, record: Record) -> None:
         """Submersion, then each cause, then their sum, into a record."""
         model = self.model
+        record.instant[0] = data.time
         record.results[:] = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
         wrenches.merge(record.results, self._owners, record.centres)
         buoyancy = record.causes["buoyancy"]

@@ -15,6 +15,8 @@ from buoyancy_mj.kernels import waves as kernels
 
 SMALLEST, LARGEST = 1e-6, 1e6
 """Bounds of frequencies, periods, wavelengths, depths and levels, in SI units: none in nature comes near them."""
+MOST_WAVES = 10_000
+"""Waves at once: each costs its time in every step."""
 GRAVITY = 9.81
 """Acceleration [m/s^2] in the dispersion relation when nobody says otherwise: MuJoCo's default."""
 
@@ -151,6 +153,9 @@ class Water:
         for wave in waves:
             if not hasattr(wave, "rows"):
                 raise WaterError(f"{wave!r} is no wave; possible are RegularWave and LevelOscillation")
+        count = sum(len(wave.rows) for wave in waves)
+        if count > MOST_WAVES:
+            raise WaterError(f"the sea has {count} waves; it may have {MOST_WAVES} at most, so leave out the smallest")
         object.__setattr__(self, "waves", waves)
         try:
             current = np.asarray(self.current, float)

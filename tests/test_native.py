@@ -129,7 +129,9 @@ def test_the_loads_of_the_last_pass_stay_readable(compiled):
 def test_loads_of_data_that_nothing_acted_on_are_refused():
     model, data = raft()
     buoyancy = Buoyancy(model)
-    with pytest.raises(EngineError, match="this water has not acted on these data; step them while it is installed"):
+    with pytest.raises(
+        EngineError, match="this water has not acted on these data at their time, 0 s; step them while it acts"
+    ):
         buoyancy.loads(data)
     with buoyancy.installed():
         mujoco.mj_forward(model, data)

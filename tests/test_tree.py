@@ -86,6 +86,15 @@ def test_a_tree_holds_each_triangle_in_one_leaf_and_each_corner_in_its_boxes(nam
         assert ((first[inside] >= first[node]) & (last[inside] <= last[node])).all()
 
 
+def test_the_same_mesh_grows_the_same_tree(monkeypatch):
+    # a ball is as wide along each axis
+    for name in ("ball", "plate"):
+        one, other = (packed(MESHES[name], Water(), monkeypatch, few=0) for _ in range(2))
+        for array in one.arrays:
+            if array not in ("depths", "swell"):
+                np.testing.assert_array_equal(one.arrays[array], other.arrays[array])
+
+
 def test_the_moments_are_the_integrals(monkeypatch):
     hulls = packed(MESHES["torus"], Water(), monkeypatch, few=0)
     # a rule of degree two: the middles of the edges

@@ -154,3 +154,8 @@ def test_depth_is_positive_in_the_water():
 def test_impossible_water_is_told(make, message):
     with pytest.raises(WaterError, match=message):
         make()
+
+
+def test_a_sea_of_absurdly_many_waves_is_told():
+    with pytest.raises(WaterError, match="the sea has 10001 waves; it may have 10000 at most"):
+        Water(waves=[LevelOscillation(0.0, 1.0)] * 10_001)

@@ -137,6 +137,8 @@ _FOUR = (
 )
 PANEL = 2.0
 """Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
+PANELS = 256
+"""Most of them: no ripple is resolved that is shorter than a hundredth of the hull."""
 SLIM = 1e-3
 """Square of the ends' distance, over that of their distances from the middle, for which one point along a cut is enough."""
 
@@ -184,7 +186,7 @@ def _walk(
     c0, c1, c2 = middle[0], middle[1], middle[2]
     eta, s0, s1, s2, curvature, steepest = _approach(waves, origin, r, c0, c1, c2, time, swell)
     reach = steepest * math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
-    doubled, panels = doublings(reach), max(1, math.ceil(reach / PANEL))
+    doubled, panels = doublings(reach), min(max(1, math.ceil(reach / PANEL)), PANELS)
     # the plane, as the depth under it: d + g (x - c)
     g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
     d = level + eta - origin[2] - (r[6] * c0 + r[7] * c1 + r[8] * c2)

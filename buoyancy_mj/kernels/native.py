@@ -358,6 +358,9 @@ def plugin_compute(model, data, instance, capability, context):
     ):
         _resolved(model, data, np.int64(instance), context)
         record = word(_slot(data, instance, context))
+        if record == 0:
+            # Python is just reading the model
+            return
         _words(record, Record.ids)[Id.sizes] = _sizes(model, record)
     _act_or_fail(model, data, _words(record, Record.ids)[Id.water], record)
 

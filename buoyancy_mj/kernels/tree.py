@@ -57,8 +57,8 @@ def build(corners, leaf, order, spans):
         for k in range(3):
             widths[k] = middles[part, k].max() - middles[part, k].min()
         thin, widest = np.argmin(widths), np.argmax(widths)
-        half = low
-        if 4.0 * widths[thin] < widths[3 - thin - widest]:
+        half, next_widest = low, widths.sum() - widths[thin] - widths[widest]
+        if 4.0 * widths[thin] < next_widest:
             for i in part:
                 if _faces_along(corners[i], thin):
                     order[half] = i
