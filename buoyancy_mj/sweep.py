@@ -1,14 +1,12 @@
 """Many runs of one scene: a grid or random draws over its fields, as batches on all cores, one row of results each."""
 
-import csv
 import dataclasses
 import functools
 import hashlib
 import itertools
 import math
-import os
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +19,7 @@ from buoyancy_mj import catalog
 from buoyancy_mj.callbacks import plugin_instances
 from buoyancy_mj.errors import BuoyancyError, DivergenceError, SweepError
 from buoyancy_mj.frames import Summary
+from buoyancy_mj.results import Journal, read_parquet, write_parquet
 from buoyancy_mj.scene import Scene, read_scene
 from buoyancy_mj.simulation import Simulation
 
@@ -29,7 +28,6 @@ AT_ONCE = 64
 ROOM = 2e8
 """Memory that the poses of a batch may take [bytes]."""
 _SUMMARY = tuple(f.name for f in dataclasses.fields(Summary) if f.name not in ("scene", "wall_time", "real_time_factor"))
-_ABOUT = ("run", "scene")
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 
 
@@ -95,69 +93,6 @@ def draws(over: Sequence[Over], count: int, seed: int) -> list[tuple[float, ...]
     return [tuple(row) for row in np.random.default_rng(seed).uniform(low, high, (count, len(over))).tolist()]
 
 
-class Journal:
-    """Rows of finished runs in a CSV file: written as they come, and read when a sweep goes on."""
-
-    def __init__(self, path: Path, keys: Sequence[str], scene: str, known: Sequence[Mapping[str, Any]] = ()) -> None:
-        """Open it, and read the runs that it holds.
-
-        Args:
-            path: of the file.
-            keys: fields that vary.
-            scene: a digest of what does not.
-            known: rows that a finished sweep has left elsewhere.
-
-        Raises:
-            SweepError: the file holds something else, or cannot be written.
-        """
-        self.header = [*_ABOUT, *keys, "status", "reason", *(name for name in _SUMMARY if name not in keys)]
-        self.rows: dict[int, dict[str, str]] = {}
-        try:
-            whole = path.read_bytes() if path.exists() else b""
-            # a line that a kill broke off does not count
-            complete = whole[: whole.rfind(b"\n") + 1]
-            rows = csv.DictReader(complete.decode().splitlines())
-            if complete or known:
-                self._take(path, rows.fieldnames or known[0], [*rows, *known], scene)
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = path.open("r+" if path.exists() else "w", newline="")
-            self._file.truncate(len(complete))
-            self._file.seek(len(complete))
-        except (OSError, UnicodeDecodeError) as error:
-            raise SweepError(f"cannot keep results in '{path}': {error}") from error
-        self._writer = csv.DictWriter(self._file, self.header)
-        if not complete:
-            self._writer.writeheader()
-            for row in known:
-                self._writer.writerow(row)
-
-    def _take(self, path: Path, header: Iterable[str], rows: Sequence[Mapping[str, Any]], scene: str) -> None:
-        """Believe rows of earlier sweeps, if they are of this one."""
-        if list(header) != self.header:
-            raise SweepError(f"'{path}' holds other columns than this sweep has; give another --out, or remove it")
-        for row in rows:
-            if row["scene"] != scene:
-                raise SweepError(
-                    f"'{path}' holds runs of another scene, or with other flags; give another --out, or remove it"
-                )
-            self.rows[int(row["run"])] = {key: "" if value is None else str(value) for key, value in row.items()}
-
-    def add(self, row: Mapping[str, Any]) -> None:
-        """Write one row."""
-        plain = {key: "" if value is None else value for key, value in row.items()}
-        self._writer.writerow(plain)
-        self.rows[int(row["run"])] = {key: str(value) for key, value in plain.items()}
-
-    def save(self) -> None:
-        """See the rows onto the disk."""
-        self._file.flush()
-        os.fsync(self._file.fileno())
-
-    def close(self) -> None:
-        """No more rows."""
-        self._file.close()
-
-
 @dataclasses.dataclass(frozen=True)
 class Sweep:
     """A scene and the values of its fields in each run."""
@@ -190,8 +125,8 @@ class Sweep:
         """
         # parquet has no end to write to, so that a journal stands beside it until all is done
         journal = self.out if self.out.suffix == ".csv" else self.out.with_suffix(".partial.csv")
-        known = _read_parquet(self.out) if self.out.suffix == ".parquet" and not journal.exists() else []
-        done = Journal(journal, self.keys, self._digest, known)
+        known = read_parquet(self.out) if self.out.suffix == ".parquet" and not journal.exists() else []
+        done = Journal(journal, self._header, self._digest, known)
         try:
             self._compare(journal, done.rows)
             self._check_fields()
@@ -206,8 +141,13 @@ class Sweep:
         finally:
             done.close()
         if self.out.suffix == ".parquet":
-            _write_parquet(self.out, [done.rows[i] for i in sorted(done.rows)], done.header)
+            write_parquet(self.out, [done.rows[i] for i in sorted(done.rows)], done.header)
             journal.unlink()
+
+    @property
+    def _header(self) -> list[str]:
+        """Columns of the results."""
+        return ["run", "scene", *self.keys, "status", "reason", *(name for name in _SUMMARY if name not in self.keys)]
 
     def _compare(self, path: Path, rows: Mapping[int, Mapping[str, str]]) -> None:
         """Refuse rows of runs that this sweep does not have, or has with other values."""
@@ -322,32 +262,3 @@ def _layout(simulation: Simulation) -> tuple[int, ...]:
     model = simulation.model
     sizes = [int(getattr(model, f"n{name}")) for name in ("q", "v", "a", "u", "body", "geom", "site", "sensordata", "mocap")]
     return (*sizes, simulation.steps, int(np.float64(model.opt.timestep).view(np.int64)), len(plugin_instances(model)))
-
-
-def _read_parquet(path: Path) -> list[dict[str, Any]]:
-    """The rows that a finished sweep has left, if there are any."""
-    from pyarrow import ArrowException, parquet
-
-    if not path.exists():
-        return []
-    try:
-        rows: list[dict[str, Any]] = parquet.read_table(path).to_pylist()
-    except (OSError, ArrowException) as error:
-        raise SweepError(f"cannot read the results in '{path}': {error}; give another --out, or remove it") from error
-    return rows
-
-
-def _write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequence[str]) -> None:
-    """All rows as a table, numbers as numbers."""
-    import pyarrow as pa  # comes along with Rerun
-    from pyarrow import parquet
-
-    columns: dict[str, list[Any]] = {}
-    for name in header:
-        column: list[Any] = [row[name] for row in rows]
-        if name not in ("scene", "status", "reason", "method"):
-            column = [float(value) if value != "" else None for value in column]
-        columns[name] = column
-    part = path.with_suffix(".partial.parquet")
-    parquet.write_table(pa.table(columns), part)
-    part.replace(path)

@@ -8,11 +8,24 @@ Where the engine keeps its own numbers says a table of byte offsets, `OFFSETS`.
 from enum import IntEnum
 
 import numpy as np
-from llvmlite import ir
-from numba import carray, njit, types
-from numba.extending import intrinsic
+from numba import carray, njit
 
 from buoyancy_mj.kernels import clip, wrenches
+from buoyancy_mj.kernels.memory import (
+    call,
+    corners,
+    doubles,
+    give,
+    grid,
+    int32s,
+    number,
+    pointer,
+    row,
+    spans,
+    take,
+    word,
+    words,
+)
 
 Water = IntEnum(
     "Water",
@@ -49,98 +62,6 @@ NO_GRAVITY = 1 << 7
 """MuJoCo's mjDSBL_GRAVITY; see `native`, which checks it."""
 
 
-# words and arrays at an address
-
-
-@intrinsic
-def _pointer(typing, address):
-    def code(context, builder, signature, args):
-        return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
-
-    return types.voidptr(types.int64), code
-
-
-@intrinsic
-def _call(typing, function, first, second, third, fourth):
-    """Call the C function at an address with four words; it gives one. What takes fewer or gives none does not mind."""
-
-    def code(context, builder, signature, args):
-        word = ir.IntType(64)
-        kind = ir.FunctionType(word, [word] * 4)
-        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
-
-    return types.int64(*[types.int64] * 5), code
-
-
-@intrinsic
-def _take(typing, address):
-    """Set the word at an address to 1 at one go with all threads; what it was."""
-
-    def code(context, builder, signature, args):
-        word = ir.IntType(64)
-        return builder.atomic_rmw("xchg", builder.inttoptr(args[0], word.as_pointer()), word(1), "seq_cst")
-
-    return types.int64(types.int64), code
-
-
-@intrinsic
-def _give(typing, address):
-    """Set it back to 0."""
-
-    def code(context, builder, signature, args):
-        word = ir.IntType(64)
-        return builder.atomic_rmw("xchg", builder.inttoptr(args[0], word.as_pointer()), word(0), "seq_cst")
-
-    return types.int64(types.int64), code
-
-
-@njit(cache=True, inline="always")
-def word(address):
-    """The 64-bit word at an address."""
-    return carray(_pointer(address), (1,), np.int64)[0]
-
-
-@njit(cache=True, inline="always")
-def _number(address):
-    return carray(_pointer(address), (1,), np.float64)[0]
-
-
-@njit(cache=True, inline="always")
-def _doubles(address, rows, columns):
-    return carray(_pointer(address), (rows, columns), np.float64)
-
-
-@njit(cache=True, inline="always")
-def _int32s(address, rows):
-    return carray(_pointer(address), (rows,), np.int32)
-
-
-@njit(cache=True, inline="always")
-def _grid(table, k):
-    """The k-th array of a table, of two dimensions."""
-    return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8), word(table + 24 * k + 16)), np.float64)
-
-
-@njit(cache=True, inline="always")
-def _row(table, k):
-    return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8),), np.float64)
-
-
-@njit(cache=True, inline="always")
-def _words(table, k):
-    return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8),), np.int64)
-
-
-@njit(cache=True, inline="always")
-def _spans(table, k):
-    return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8), 5), np.int64)
-
-
-@njit(cache=True, inline="always")
-def _corners(table, k):
-    return carray(_pointer(word(table + 24 * k)), (word(table + 24 * k + 8), 3), np.uint32)
-
-
 # what acts
 
 
@@ -150,81 +71,81 @@ def _evaluate(model, data, water, scratch, record):
 
     Gives 0; or the address of a text that tells why it cannot.
     """
-    offsets, links = _words(water, Water.offsets), _words(water, Water.links)
+    offsets, links = words(water, Water.offsets), words(water, Water.links)
     nbody, ngeom, nv = (
         word(model + offsets[Offset.nbody]),
         word(model + offsets[Offset.ngeom]),
         word(model + offsets[Offset.nv]),
     )
-    flags = carray(_pointer(model + offsets[Offset.disableflags]), (1,), np.int32)[0]
-    gravity = carray(_pointer(model + offsets[Offset.gravity]), (3,), np.float64)
+    flags = carray(pointer(model + offsets[Offset.disableflags]), (1,), np.int32)[0]
+    gravity = carray(pointer(model + offsets[Offset.gravity]), (3,), np.float64)
     strength = 0.0
     if not flags & NO_GRAVITY:
         if gravity[0] != 0.0 or gravity[1] != 0.0 or gravity[2] > 0.0:
             return links[Link.gravity_text]
         strength = -gravity[2]
-    time = _number(data + offsets[Offset.time])
-    xipos = _doubles(word(data + offsets[Offset.xipos]), nbody, 3)
-    subtree_com = _doubles(word(data + offsets[Offset.subtree_com]), nbody, 3)
-    roots = _int32s(word(model + offsets[Offset.body_rootid]), nbody)
-    waves, sea, owners = _grid(water, Water.waves), _row(water, Water.sea), _words(water, Water.owners)
-    wet, centres, total = _grid(record, Record.results), _grid(record, Record.centres), _grid(record, Record.total)
+    time = number(data + offsets[Offset.time])
+    xipos = doubles(word(data + offsets[Offset.xipos]), nbody, 3)
+    subtree_com = doubles(word(data + offsets[Offset.subtree_com]), nbody, 3)
+    roots = int32s(word(model + offsets[Offset.body_rootid]), nbody)
+    waves, sea, owners = grid(water, Water.waves), row(water, Water.sea), words(water, Water.owners)
+    wet, centres, total = grid(record, Record.results), grid(record, Record.centres), grid(record, Record.total)
     # what is under water
     if links[Link.submerge] != 0:
-        text = _call(links[Link.submerge], water, data, record, 0)
+        text = call(links[Link.submerge], water, data, record, 0)
         if text != 0:
             return text
     else:
         clip.submerge_hulls(
-            _grid(water, Water.vertices),
-            _corners(water, Water.faces),
-            _grid(water, Water.areas),
-            _words(water, Water.nodes),
-            _spans(water, Water.spans),
-            _grid(water, Water.boxes),
-            _grid(water, Water.moments),
-            _grid(water, Water.whole),
-            _words(water, Water.frames),
-            _doubles(word(data + offsets[Offset.geom_xpos]), ngeom, 3),
-            _doubles(word(data + offsets[Offset.geom_xmat]), ngeom, 9),
+            grid(water, Water.vertices),
+            corners(water, Water.faces),
+            grid(water, Water.areas),
+            words(water, Water.nodes),
+            spans(water, Water.spans),
+            grid(water, Water.boxes),
+            grid(water, Water.moments),
+            grid(water, Water.whole),
+            words(water, Water.frames),
+            doubles(word(data + offsets[Offset.geom_xpos]), ngeom, 3),
+            doubles(word(data + offsets[Offset.geom_xmat]), ngeom, 9),
             sea[1],
             waves,
             time,
-            _row(scratch, Scratch.depths),
-            _grid(scratch, Scratch.swell),
+            row(scratch, Scratch.depths),
+            grid(scratch, Scratch.swell),
             wet,
         )
     wrenches.merge(wet, owners, centres)
     # the loads by cause, and their sum
-    buoyancy = _grid(record, Record.buoyancy)
+    buoyancy = grid(record, Record.buoyancy)
     buoyancy[:, :] = 0.0
     wrenches.add_buoyancy(wet, owners, sea[0] * strength, xipos, buoyancy)
     total[:, :] = buoyancy
-    damped = _words(water, Water.damped)
+    damped = words(water, Water.damped)
     if damped.shape[0] > 0:
-        drag = _grid(record, Record.drag)
+        drag = grid(record, Record.drag)
         drag[:, :] = 0.0
         wrenches.add_drag(
             centres,
             damped,
-            _row(water, Water.volumes),
-            _grid(water, Water.linear),
-            _grid(water, Water.quadratic),
-            _words(water, Water.members),
-            _words(water, Water.member_starts),
-            carray(_pointer(word(model + offsets[Offset.body_mass])), (nbody,), np.float64),
-            _doubles(word(model + offsets[Offset.body_inertia]), nbody, 3),
+            row(water, Water.volumes),
+            grid(water, Water.linear),
+            grid(water, Water.quadratic),
+            words(water, Water.members),
+            words(water, Water.member_starts),
+            carray(pointer(word(model + offsets[Offset.body_mass])), (nbody,), np.float64),
+            doubles(word(model + offsets[Offset.body_inertia]), nbody, 3),
             xipos,
-            _doubles(word(data + offsets[Offset.ximat]), nbody, 9),
-            _doubles(word(data + offsets[Offset.xmat]), nbody, 9),
-            _doubles(word(data + offsets[Offset.cvel]), nbody, 6),
+            doubles(word(data + offsets[Offset.ximat]), nbody, 9),
+            doubles(word(data + offsets[Offset.xmat]), nbody, 9),
+            doubles(word(data + offsets[Offset.cvel]), nbody, 6),
             subtree_com,
             roots,
             sea[1],
             waves,
-            _row(water, Water.current),
+            row(water, Water.current),
             time,
-            _number(model + offsets[Offset.timestep]),
+            number(model + offsets[Offset.timestep]),
             drag,
         )
         for b in range(nbody):
@@ -232,29 +153,29 @@ def _evaluate(model, data, water, scratch, record):
                 total[b, i] += drag[b, i]
     wrenches.project(
         total,
-        _words(water, Water.bodies),
+        words(water, Water.bodies),
         xipos,
         subtree_com,
         roots,
-        _int32s(word(model + offsets[Offset.body_parentid]), nbody),
-        _int32s(word(model + offsets[Offset.body_dofnum]), nbody),
-        _int32s(word(model + offsets[Offset.body_dofadr]), nbody),
-        _int32s(word(model + offsets[Offset.dof_parentid]), nv),
-        _doubles(word(data + offsets[Offset.cdof]), nv, 6),
-        carray(_pointer(word(data + offsets[Offset.qfrc_passive])), (nv,), np.float64),
+        int32s(word(model + offsets[Offset.body_parentid]), nbody),
+        int32s(word(model + offsets[Offset.body_dofnum]), nbody),
+        int32s(word(model + offsets[Offset.body_dofadr]), nbody),
+        int32s(word(model + offsets[Offset.dof_parentid]), nv),
+        doubles(word(data + offsets[Offset.cdof]), nv, 6),
+        carray(pointer(word(data + offsets[Offset.qfrc_passive])), (nv,), np.float64),
     )
-    ids = _words(record, Record.ids)
+    ids = words(record, Record.ids)
     ids[Id.model], ids[Id.data] = model, data
-    _row(record, Record.instant)[0] = time
+    row(record, Record.instant)[0] = time
     return 0
 
 
 @njit(cache=True)
 def _free_scratch(water):
     """Scratch that no other thread works in, from the pool of the water."""
-    pool = _words(water, Water.pool)
+    pool = words(water, Water.pool)
     i = 0
-    while _take(word(pool[i] + 24 * Scratch.state)) != 0:
+    while take(word(pool[i] + 24 * Scratch.state)) != 0:
         i = (i + 1) % pool.shape[0]
     return pool[i]
 
@@ -264,7 +185,7 @@ def act(model, data, water, record):
     scratch = _free_scratch(water)
     state = word(scratch + 24 * Scratch.state)
     text = _evaluate(model, data, water, scratch, record if record != 0 else word(state + 8 * State.record))
-    _give(state)
+    give(state)
     return text
 
 
@@ -274,10 +195,10 @@ def act(model, data, water, record):
 @njit(cache=True)
 def _act_or_fail(model, data, water, record):
     """Act, and tell the engine what fails."""
-    links = _words(water, Water.links)
-    text = _call(links[Link.act], model, data, water, record)
+    links = words(water, Water.links)
+    text = call(links[Link.act], model, data, water, record)
     if text != 0:
-        _call(links[Link.error], text, 0, 0, 0)
+        call(links[Link.error], text, 0, 0, 0)
 
 
 def callback(model, data, water, previous, copies):
@@ -286,11 +207,11 @@ def callback(model, data, water, previous, copies):
     With `copies` the water acts on all models of the own one's signature too.
     """
     if previous != 0:
-        _call(previous, model, data, 0, 0)
-    links = _words(water, Water.links)
+        call(previous, model, data, 0, 0)
+    links = words(water, Water.links)
     own = model == links[Link.model]
     if not own and copies != 0:
-        own = word(model + _words(water, Water.offsets)[Offset.signature]) == links[Link.signature]
+        own = word(model + words(water, Water.offsets)[Offset.signature]) == links[Link.signature]
     if own:
         _act_or_fail(model, data, water, 0)
 
@@ -307,9 +228,9 @@ def _slot(data, instance, context):
 @njit(cache=True)
 def _resolved(model, data, instance, context):
     """Let Python find the water of a model and put a record of it into the data; tells the engine what fails."""
-    text = _call(word(context + 8 * Context.resolve), model, data, instance, 0)
+    text = call(word(context + 8 * Context.resolve), model, data, instance, 0)
     if text != 0:
-        _call(word(context + 8 * Context.error), text, 0, 0, 0)
+        call(word(context + 8 * Context.error), text, 0, 0, 0)
 
 
 def plugin_nstate(model, instance):
@@ -320,12 +241,12 @@ def plugin_nstate(model, instance):
 def plugin_reset(model, state, record, instance):
     """The engine resets a data: no loads are of it any more."""
     if record != 0:
-        _words(record, Record.ids)[Id.data] = 0
+        words(record, Record.ids)[Id.data] = 0
 
 
 def plugin_init(model, data, instance, context):
     """The engine has made a data."""
-    carray(_pointer(_slot(data, instance, context)), (1,), np.int64)[0] = 0
+    carray(pointer(_slot(data, instance, context)), (1,), np.int64)[0] = 0
     _resolved(model, data, np.int64(instance), context)
     return 0
 
@@ -334,17 +255,17 @@ def plugin_destroy(data, instance, context):
     """The engine frees a data: its record may serve another."""
     record = word(_slot(data, instance, context))
     if record != 0:
-        _words(record, Record.ids)[Id.alive] = 0
+        words(record, Record.ids)[Id.alive] = 0
 
 
 def plugin_copy(target, model, source, instance, context):
     """The engine copies a data: the record's contents go along, if both are of one water."""
     one, other = word(_slot(target, instance, context)), word(_slot(source, instance, context))
-    if one == 0 or other == 0 or _words(one, Record.ids)[Id.water] != _words(other, Record.ids)[Id.water]:
+    if one == 0 or other == 0 or words(one, Record.ids)[Id.water] != words(other, Record.ids)[Id.water]:
         return
     for k in range(Record.ids):
-        _grid(one, k)[:, :] = _grid(other, k)
-    _words(one, Record.ids)[Id.data] = target if _words(other, Record.ids)[Id.data] == source else 0
+        grid(one, k)[:, :] = grid(other, k)
+    words(one, Record.ids)[Id.data] = target if words(other, Record.ids)[Id.data] == source else 0
 
 
 def plugin_compute(model, data, instance, capability, context):
@@ -353,24 +274,24 @@ def plugin_compute(model, data, instance, capability, context):
     # stepped with another model than before, or with other geoms in it
     if (
         record == 0
-        or _words(record, Record.ids)[Id.model] != model
-        or _words(record, Record.ids)[Id.sizes] != _sizes(model, record)
+        or words(record, Record.ids)[Id.model] != model
+        or words(record, Record.ids)[Id.sizes] != _sizes(model, record)
     ):
         _resolved(model, data, np.int64(instance), context)
         record = word(_slot(data, instance, context))
         if record == 0:
             # Python is just reading the model
             return
-        _words(record, Record.ids)[Id.sizes] = _sizes(model, record)
-    _act_or_fail(model, data, _words(record, Record.ids)[Id.water], record)
+        words(record, Record.ids)[Id.sizes] = _sizes(model, record)
+    _act_or_fail(model, data, words(record, Record.ids)[Id.water], record)
 
 
 @njit(cache=True)
 def _sizes(model, record):
     """A sum over the bits of the sizes of all geoms, which another size changes."""
-    offsets = _words(_words(record, Record.ids)[Id.water], Water.offsets)
+    offsets = words(words(record, Record.ids)[Id.water], Water.offsets)
     count = 3 * word(model + offsets[Offset.ngeom])
-    bits = carray(_pointer(word(model + offsets[Offset.geom_size])), (count,), np.int64)
+    bits = carray(pointer(word(model + offsets[Offset.geom_size])), (count,), np.int64)
     total = np.int64(0)
     for i in range(count):
         total = 31 * total + bits[i]

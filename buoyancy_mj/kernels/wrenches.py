@@ -55,6 +55,7 @@ def add_drag(
     below the body's apparent mass there divided by the timestep.
     """
     water = np.empty(3)
+    rate = 1.0 / timestep if timestep > 0.0 else math.inf
     for n in range(bodies.shape[0]):
         b = bodies[n]
         volume = centres[b, 0]
@@ -77,7 +78,9 @@ def add_drag(
         )
         least_inertia = min(inertias[0], inertias[1], inertias[2])
         squared_arm = arm[0] * arm[0] + arm[1] * arm[1] + arm[2] * arm[2]
-        apparent = mass * least_inertia / (least_inertia + mass * squared_arm)
+        # without inertia, about which MuJoCo complains itself, nothing is known to hold the motion
+        opposing = least_inertia + mass * squared_arm
+        apparent = mass * least_inertia / opposing if opposing != 0.0 else 0.0
         fx = fy = fz = tx = ty = tz = 0.0
         for i in range(3):
             ax, ay, az = r[i], r[3 + i], r[6 + i]
@@ -85,8 +88,8 @@ def add_drag(
             spin = w[0] * ax + w[1] * ay + w[2] * az
             push = wet * (linear[n, i] + quadratic[n, i] * abs(speed))
             twist = wet * (linear[n, 3 + i] + quadratic[n, 3 + i] * abs(spin))
-            push = -min(push, apparent / timestep) * speed
-            twist = -min(twist, inertias[i] / timestep) * spin
+            push = -min(push, apparent * rate) * speed
+            twist = -min(twist, inertias[i] * rate) * spin
             fx, fy, fz = fx + push * ax, fy + push * ay, fz + push * az
             tx, ty, tz = tx + twist * ax, ty + twist * ay, tz + twist * az
         out[b, 0] += fx
