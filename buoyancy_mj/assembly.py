@@ -52,7 +52,9 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
     if afloat and not skips_passive(spec.option.disableflags):
         # where the plugin cannot be, that was told on import
         with contextlib.suppress(EngineError):
-            add_water(spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms)
+            add_water(
+                spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms, hull=scene.hull, fill=scene.fill
+            )
     model = _compiled(spec, path)
     _load(model, scene, bodies)
     try:

@@ -35,6 +35,8 @@ class Buoyancy:
         model: any MuJoCo model with bodies that move.
         water: fresh and still at z = 0 if None.
         geoms: which geoms displace water, see `geoms.displacing_hulls`.
+        hull: which of them as their convex hull, likewise.
+        fill: and which flood, and displace in part, likewise.
         bodies: indices of the bodies whose geoms may; None for all.
         drag: how damping is estimated; None for none.
         method: how the submersion is found: "exact", or the source paper's "convex_hull" and
@@ -53,6 +55,8 @@ class Buoyancy:
         water: Water | None = None,
         *,
         geoms: str | Sequence[str] | None = None,
+        hull: str | Sequence[str] | None = None,
+        fill: str | Sequence[str] | None = None,
         bodies: Sequence[int] | None = None,
         drag: Drag | None = Drag(),
         method: str | Method = "exact",
@@ -64,12 +68,19 @@ class Buoyancy:
         callbacks.refuse_actuation(model)
         _refuse_sleep(model)
         _ = self.gravity
-        self.hulls = displacing_hulls(model, geoms, bodies)
+        self.hulls = displacing_hulls(model, geoms, bodies, hull=hull, fill=fill)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
         frames = [hull.geom for hull in self.hulls]
         turns = [hull.body_from_geom for hull in self.hulls]
-        self.packed = self.method.packed([hull.mesh for hull in self.hulls], frames, self._owners, self.water, turns)
+        self.packed = self.method.packed(
+            [hull.mesh for hull in self.hulls],
+            frames,
+            self._owners,
+            self.water,
+            turns,
+            [hull.fill for hull in self.hulls],
+        )
         self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""

@@ -37,6 +37,10 @@ _SET = Annotated[
     list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any field, as water.waves.0.amplitude=0.1.")
 ]
 _GEOMS = Annotated[list[str] | None, typer.Option(help="Which geoms displace water: name globs ('hull*') or group:N.")]
+_HULL = Annotated[
+    list[str] | None, typer.Option(help="Geoms that displace as their convex hull: 'frame*=convex', or 'convex'.")
+]
+_FILL = Annotated[list[str] | None, typer.Option(help="Flooded geoms, and the part that displaces: 'frame*=0.1'.")]
 _METHOD = Annotated[
     str | None, typer.Option(help="How the submersion is found: exact (the default), convex_hull or sections.")
 ]
@@ -84,6 +88,8 @@ def run(
     live: Annotated[bool, typer.Option("--live", help="Stream to a Rerun viewer while it runs.")] = False,
     settings: _SET = None,
     geoms: _GEOMS = None,
+    hull: _HULL = None,
+    fill: _FILL = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="The summary as JSON on the standard output, nothing else.")
     ] = False,
@@ -94,7 +100,7 @@ def run(
     if record is not None and record.suffix != ".rrd":
         raise SceneError(f"--record is '{record}'; a recording's name ends in .rrd")
     path = catalog.scene_path(scene)
-    read = _read(path, vehicle, duration, timestep, settings, geoms, method)
+    read = _read(path, vehicle, duration, timestep, settings, method, geoms=geoms, hull=hull, fill=fill)
     with _err.status("preparing (the first run after an installation compiles, which takes some seconds)"):
         simulation = Simulation(read)
     target = None if no_record else record or Path("recordings") / f"{path.stem}.rrd"
@@ -132,11 +138,13 @@ def sweep(
     method: _METHOD = None,
     settings: _SET = None,
     geoms: _GEOMS = None,
+    hull: _HULL = None,
+    fill: _FILL = None,
 ) -> None:
     """Run a scene many times over a grid or random draws of its fields, as batches."""
     fields = [sweeps.parsed(text) for text in over]
     path = catalog.scene_path(scene)
-    common = tuple(_settings(vehicle, duration, timestep, settings, geoms, method))
+    common = tuple(_settings(vehicle, duration, timestep, settings, method, geoms=geoms, hull=hull, fill=fill))
     read_scene(path, common)
     values = sweeps.grid(fields) if draws is None else sweeps.draws(fields, draws, seed)
     plan = sweeps.Sweep(path, common, tuple(field.key for field in fields), tuple(values), out)
@@ -173,11 +181,17 @@ def view(
     method: _METHOD = None,
     settings: _SET = None,
     geoms: _GEOMS = None,
+    hull: _HULL = None,
+    fill: _FILL = None,
 ) -> None:
     """Open MuJoCo's interactive viewer with the water acting and drawn in it."""
     from buoyancy_mj.viewer import view as show  # needs GLFW and a display, which 'run' does not
 
-    show(Simulation(_read(catalog.scene_path(scene), vehicle, None, timestep, settings, geoms, method)))
+    show(
+        Simulation(
+            _read(catalog.scene_path(scene), vehicle, None, timestep, settings, method, geoms=geoms, hull=hull, fill=fill)
+        )
+    )
 
 
 @app.command()
@@ -215,11 +229,11 @@ def _read(
     duration: float | None,
     timestep: float | None,
     settings: list[str] | None,
-    geoms: list[str] | None,
     method: str | None,
+    **words: list[str] | None,
 ) -> Scene:
     """The scene with the flags laid over it."""
-    return read_scene(path, _settings(vehicle, duration, timestep, settings, geoms, method))
+    return read_scene(path, _settings(vehicle, duration, timestep, settings, method, **words))
 
 
 def _settings(
@@ -227,8 +241,8 @@ def _settings(
     duration: float | None,
     timestep: float | None,
     settings: list[str] | None,
-    geoms: list[str] | None,
     method: str | None,
+    **words: list[str] | None,
 ) -> list[str]:
     """The flags as settings."""
     # first, so that settings may reach the method's options
@@ -242,9 +256,7 @@ def _settings(
         over.append(f"duration={duration}")
     if timestep is not None:
         over.append(f"timestep={timestep}")
-    if geoms:
-        over.append(f"geoms={json.dumps(geoms, ensure_ascii=False)}")
-    return over
+    return over + [f"{name}={json.dumps(given, ensure_ascii=False)}" for name, given in words.items() if given]
 
 
 def _recorded(simulation: Simulation, target: Path | None, *, live: bool) -> tuple[Summary, Path | None]:

@@ -64,10 +64,16 @@ class ConvexHull:
             raise MethodError(f"resort_every is {self.resort_every!r}; it must be a number of steps, or 0 for no sorting")
 
     def packed(
-        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+        self,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        bodies: ArrayLike,
+        water: Water,
+        turns: ArrayLike | None = None,
+        fills: ArrayLike | None = None,
     ) -> "PackedConvexHulls":
         """Hulls ready to be submerged, see `PackedConvexHulls`."""
-        return PackedConvexHulls(self, meshes, frames, water)
+        return PackedConvexHulls(self, meshes, frames, water, fills)
 
 
 class _Run:
@@ -87,12 +93,20 @@ class _Run:
 class PackedConvexHulls:
     """Hulls whose submersion is that of the convex hulls of their wet vertices."""
 
-    def __init__(self, method: ConvexHull, meshes: Sequence[TriMesh], frames: ArrayLike, water: Water) -> None:
+    def __init__(
+        self,
+        method: ConvexHull,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        water: Water,
+        fills: ArrayLike | None = None,
+    ) -> None:
         """Pack `meshes`, see `methods.Method`."""
         self.method = method
         self.water = water
         self.frames = np.asarray(frames, np.int64)
-        self.volumes = np.array([mesh.volume for mesh in meshes])
+        self._fills = np.ones(len(meshes)) if fills is None else np.asarray(fills, float)
+        self.volumes = self._fills * [mesh.volume for mesh in meshes]
         """True volumes of the meshes (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
@@ -135,7 +149,7 @@ class PackedConvexHulls:
                 self._counts["hulls"] += 1
                 self._counts["hull_points"] += len(points)
             volume, centroid = hull_moments(points, self.method.centroid)
-            self.results[h] = volume, *(centroid + positions[frame]), np.nan, np.nan
+            self.results[h] = self._fills[h] * volume, *(centroid + positions[frame]), np.nan, np.nan
         self._counts["calls"] += 1
         return self.results
 

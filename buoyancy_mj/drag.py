@@ -8,8 +8,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.choice import body_name
 from buoyancy_mj.errors import ModelError
-from buoyancy_mj.geoms import Hull, body_name
+from buoyancy_mj.hull import Hull
 from buoyancy_mj.kernels.rays import silhouette
 from buoyancy_mj.mesh import TriMesh
 
@@ -85,8 +86,9 @@ def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density:
                 f"body '{body_name(model, body)}' displaces water and has a mass of {mass:g} kg; give it a mass, "
                 "or leave its geoms out (--geoms)"
             )
-        meshes = [hull.mesh_in_body for hull in hulls if hull.body == body]
-        whole = np.array([mesh.volume for mesh in meshes])
+        own = [hull for hull in hulls if hull.body == body]
+        meshes = [hull.mesh_in_body for hull in own]
+        whole = np.array([hull.displacement for hull in own])
         volumes[row] = whole.sum()
         centre = whole @ [mesh.centroid for mesh in meshes] / volumes[row]
         quadratic[row], length = _quadratic(0.5 * density * drag.coefficient, meshes, centre)

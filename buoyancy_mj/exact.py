@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MethodError
-from buoyancy_mj.kernels import clip
+from buoyancy_mj.kernels import clip, waterplane
 from buoyancy_mj.mesh import TriMesh, refined
 from buoyancy_mj.tree import grown
 from buoyancy_mj.water import Water
@@ -41,10 +41,16 @@ class Exact:
             raise MethodError(f"tolerance is {self.tolerance!r}; it must be a part of the volume, above 0 and at most 1")
 
     def packed(
-        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+        self,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        bodies: ArrayLike,
+        water: Water,
+        turns: ArrayLike | None = None,
+        fills: ArrayLike | None = None,
     ) -> "PackedHulls":
         """Hulls ready to be submerged, see `PackedHulls`."""
-        return PackedHulls(meshes, frames, bodies, water, self.tolerance)
+        return PackedHulls(meshes, frames, bodies, water, self.tolerance, fills)
 
 
 class PackedHulls:
@@ -55,7 +61,13 @@ class PackedHulls:
     """
 
     def __init__(
-        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, tolerance: float = 2e-3
+        self,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        bodies: ArrayLike,
+        water: Water,
+        tolerance: float = 2e-3,
+        fills: ArrayLike | None = None,
     ) -> None:
         """Pack `meshes`.
 
@@ -65,12 +77,19 @@ class PackedHulls:
             bodies: hulls of one number (h,) move together; errors in waves are seen against their joint volume.
             water: the sea.
             tolerance: see `Exact`.
+            fills: part of each mesh's volume that displaces water (h,); None for all of it.
         """
         self.water = water
         self.frames = np.asarray(frames, np.int64)
-        self._whole = np.array([[m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents)] for m in meshes])
+        fills = np.ones(len(meshes)) if fills is None else np.asarray(fills, float)
+        self._whole = np.array(
+            [
+                [fill * m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents), fill]
+                for m, fill in zip(meshes, fills, strict=True)
+            ]
+        )
         self.volumes = self._whole[:, 0].copy()
-        """Whole volumes (h,) [m^3]."""
+        """What the whole meshes displace (h,) [m^3]."""
         edges = _longest_edges(meshes, np.asarray(bodies), water, tolerance)
         trees = [grown(*refined(mesh.vertices, mesh.faces, edge)) for mesh, edge in zip(meshes, edges, strict=True)]
         starts = np.cumsum([0, *(len(tree.vertices) for tree in trees)])
@@ -84,9 +103,12 @@ class PackedHulls:
         )
         self._boxes = np.concatenate([tree.boxes for tree in trees])
         self._moments = np.concatenate([tree.moments for tree in trees])
+        # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area itself stays
+        self._moments[:, :-1] *= np.repeat(fills, np.diff(self._nodes))[:, None]
         a, b, c = self._vertices[self._faces.T]
         vectors = 0.5 * np.cross(b - a, c - a)
-        self._areas = np.column_stack([vectors, np.linalg.norm(vectors, axis=1)])
+        shares = np.repeat(fills, np.diff(firsts))[:, None]
+        self._areas = np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)])
         self._waves = water.rows
         self._depths, self._swell = np.empty(np.diff(starts).max()), np.empty((len(self._waves), 7))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
@@ -131,6 +153,25 @@ class PackedHulls:
             self.results,
         )
         return self.results
+
+    def waterplanes(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Waterplanes of all hulls on the still level (h, 10), see `kernels.waterplane.waterplanes`."""
+        rows = np.empty((len(self._whole), waterplane.COLUMNS))
+        waterplane.waterplanes(
+            self._vertices,
+            self._faces,
+            self._nodes,
+            self._spans,
+            self._boxes,
+            self._whole,
+            self.frames,
+            positions,
+            rotations,
+            self.water.level,
+            self._depths,
+            rows,
+        )
+        return rows
 
 
 def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> float:

@@ -1,6 +1,7 @@
 """Meshes as people have them, made into hulls: what can be mended safely is, the rest is named."""
 
 import numpy as np
+import scipy.spatial
 import trimesh
 from numpy.typing import ArrayLike, NDArray
 
@@ -71,6 +72,19 @@ def mended(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[T
     if doubled + inside_out > WORTH_TELLING * volume:
         notices.append(f"{name}: it crosses itself; about {(doubled + inside_out) / volume:.2%} of its volume is in doubt")
     return TriMesh(v, f), notices
+
+
+def convex_of(vertices: NDArray[np.float64], name: str = "mesh") -> TriMesh:
+    """The convex hull of vertices (n, 3) [m]: a stated approximation, for meshes that bound no volume.
+
+    Raises:
+        MeshError: they lie in a plane.
+    """
+    try:
+        solid = trimesh.convex.convex_hull(vertices)
+    except scipy.spatial.QhullError as error:
+        raise MeshError(f"{name}: it is flat and has no convex hull; give it thickness, or leave the geom out") from error
+    return TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))
 
 
 def _check_scale(v: NDArray[np.float64], name: str) -> list[str]:

@@ -20,7 +20,7 @@ class Packed(Protocol):
     results: NDArray[np.float64]
     """Last submersion (h, 6): volume, centroid (NaN when dry), wetted area, waterplane area (NaN if the method has none)."""
     volumes: NDArray[np.float64]
-    """Whole volumes of the meshes (h,) [m^3]."""
+    """What the whole meshes displace (h,) [m^3]."""
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -50,7 +50,13 @@ class Method(Protocol):
         ...
 
     def packed(
-        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+        self,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        bodies: ArrayLike,
+        water: Water,
+        turns: ArrayLike | None = None,
+        fills: ArrayLike | None = None,
     ) -> Packed:
         """Hulls ready to be submerged.
 
@@ -60,6 +66,7 @@ class Method(Protocol):
             bodies: hulls of one number (h,) move together.
             water: the sea.
             turns: body_from_frame, how the frame of each hull is turned in its body (h, 3, 3); None for not at all.
+            fills: part of each mesh's volume that displaces water (h,); None for all of it.
         """
         ...
 

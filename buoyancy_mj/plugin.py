@@ -58,6 +58,8 @@ def add_water(
     method: str | Method = "exact",
     drag: Drag | None = Drag(),
     geoms: str | Sequence[str] | None = None,
+    hull: str | Sequence[str] | None = None,
+    fill: str | Sequence[str] | None = None,
     instance: str = "sea",
 ) -> None:
     """Put water into a model: compiled from `spec`, it floats wherever MuJoCo steps it, and its saved MJCF keeps the water.
@@ -68,6 +70,8 @@ def add_water(
         method: how the submersion is found, see `Buoyancy`.
         drag: how damping is estimated; None for none.
         geoms: which geoms displace water, see `Buoyancy`.
+        hull: which of them as their convex hull, likewise.
+        fill: and which displace in part, likewise.
         instance: name of the plugin's instance in the model.
 
     Raises:
@@ -78,8 +82,11 @@ def add_water(
     registered()
     if any(plugin.name == instance for plugin in spec.plugins):
         raise ModelError(f"the model already has a plugin instance '{instance}'; give the water another name (instance=)")
-    patterns = None if geoms is None else (geoms,) if isinstance(geoms, str) else tuple(geoms)
-    settings = Settings(water=water or Water(), method=method_of(method), drag=drag, geoms=patterns)
+    chosen = {
+        name: None if words is None else (words,) if isinstance(words, str) else tuple(words)
+        for name, words in (("geoms", geoms), ("hull", hull), ("fill", fill))
+    }
+    settings = Settings(water=water or Water(), method=method_of(method), drag=drag, **chosen)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
     plugin.config = texts_from_settings(settings)
@@ -166,6 +173,8 @@ def _made(model: mujoco.MjModel, instance: int) -> Buoyancy:
         model,
         settings.water,
         geoms=settings.geoms,
+        hull=settings.hull,
+        fill=settings.fill,
         bodies=_joined(model, instance),
         drag=settings.drag,
         method=settings.method,

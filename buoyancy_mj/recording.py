@@ -13,10 +13,10 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from buoyancy_mj import plots
+from buoyancy_mj.choice import body_name, geom_name
 from buoyancy_mj.drawn import Drawn, drawn_geoms
 from buoyancy_mj.errors import BuoyancyWarning, RecordingError
 from buoyancy_mj.frames import Frame, Summary
-from buoyancy_mj.geoms import body_name, geom_name
 from buoyancy_mj.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.rrd import RrdFile
 from buoyancy_mj.simulation import Simulation

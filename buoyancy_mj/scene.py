@@ -80,6 +80,10 @@ class Scene:
     """Frames recorded per simulated second [Hz]."""
     geoms: tuple[str, ...] | None = None
     """Which geoms displace water (name globs, group:N); None for the vehicle's own choice."""
+    hull: tuple[str, ...] | None = None
+    """Which geoms displace as their convex hull (PATTERN=convex); None for the vehicle's own choice."""
+    fill: tuple[str, ...] | None = None
+    """Which geoms flood, and the part of their volume that displaces (PATTERN=0.1); None for the vehicle's own choice."""
     water: Water = Water()
     """The sea."""
     start: Start = Start()

@@ -64,17 +64,29 @@ class Sections:
             object.__setattr__(self, "axis", tuple(float(x) for x in self.axis))
 
     def packed(
-        self, meshes: Sequence[TriMesh], frames: ArrayLike, bodies: ArrayLike, water: Water, turns: ArrayLike | None = None
+        self,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        bodies: ArrayLike,
+        water: Water,
+        turns: ArrayLike | None = None,
+        fills: ArrayLike | None = None,
     ) -> "PackedSections":
         """Hulls ready to be submerged, see `PackedSections`."""
-        return PackedSections(self, meshes, frames, water, turns)
+        return PackedSections(self, meshes, frames, water, turns, fills)
 
 
 class PackedSections:
     """Hulls whose submersion is integrated from cross-sections."""
 
     def __init__(
-        self, method: Sections, meshes: Sequence[TriMesh], frames: ArrayLike, water: Water, turns: ArrayLike | None = None
+        self,
+        method: Sections,
+        meshes: Sequence[TriMesh],
+        frames: ArrayLike,
+        water: Water,
+        turns: ArrayLike | None = None,
+        fills: ArrayLike | None = None,
     ) -> None:
         """Pack `meshes`, see `methods.Method`.
 
@@ -84,7 +96,8 @@ class PackedSections:
         self.method = method
         self.water = water
         self.frames = np.asarray(frames, np.int64)
-        self.volumes = np.array([mesh.volume for mesh in meshes])
+        self._fills = np.ones(len(meshes)) if fills is None else np.asarray(fills, float)
+        self.volumes = self._fills * [mesh.volume for mesh in meshes]
         """True volumes of the meshes (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
@@ -127,7 +140,7 @@ class PackedSections:
             moments = self._upright(h, turn, depth) if self._tables is None else self._along(h, turn, depth)
             volume = moments[0] if moments[0] > 0.0 else 0.0
             centroid = moments[1:] / volume + origin if volume else np.full(3, np.nan)
-            self.results[h] = volume, *centroid, np.nan, np.nan
+            self.results[h] = self._fills[h] * volume, *centroid, np.nan, np.nan
         self._counts["calls"] += 1
         return self.results
 

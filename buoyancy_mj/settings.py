@@ -17,8 +17,10 @@ from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
 
 WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
 """Kinds of waves."""
-KEYS = ("density", "level", "waves", "current", "method", "drag", "geoms")
+KEYS = ("density", "level", "waves", "current", "method", "drag", "geoms", "hull", "fill")
 """What texts describe: the fields of `Water`, and the arguments of `Buoyancy`."""
+_CHOICES = KEYS[-3:]
+"""Words about geoms."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -33,6 +35,10 @@ class Settings:
     """How damping is estimated; None for none."""
     geoms: tuple[str, ...] | None = None
     """Which geoms displace water."""
+    hull: tuple[str, ...] | None = None
+    """Which of them as their convex hull."""
+    fill: tuple[str, ...] | None = None
+    """Which displace in part."""
 
 
 # from tables -------------------------------------------------------------------------------------------
@@ -107,7 +113,7 @@ def settings_from_texts(texts: Mapping[str, str], where: str) -> Settings:
         water=water_from_table(sea, where),
         method=method_from_table(_words(given.get("method", "exact"), f"{where}: method"), f"{where}: method"),
         drag=drag_from_table(_words(drag, f"{where}: drag") if "=" in drag else plain_value(drag), f"{where}: drag"),
-        geoms=tuple(given["geoms"].replace(",", " ").split()) if "geoms" in given else None,
+        **{key: tuple(given[key].replace(",", " ").split()) for key in _CHOICES if key in given},
     )
 
 
@@ -127,7 +133,7 @@ def texts_from_settings(settings: Settings) -> dict[str, str]:
         raise MethodError(f"{method!r} cannot be written into a model; possible are {', '.join(METHODS)}")
     texts["method"] = " ".join([method.name, *_fields(method)])
     texts["drag"] = " ".join(_fields(settings.drag, all_of_them=True)) if settings.drag else "false"
-    texts["geoms"] = " ".join(settings.geoms or ())
+    texts |= {key: " ".join(getattr(settings, key) or ()) for key in _CHOICES}
     return {key: text for key, text in texts.items() if text}
 
 

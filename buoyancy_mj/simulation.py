@@ -14,9 +14,10 @@ from scipy.spatial import ConvexHull
 from buoyancy_mj.assembly import assembled
 from buoyancy_mj.buoyancy import Buoyancy
 from buoyancy_mj.callbacks import plugin_instances
+from buoyancy_mj.choice import body_name
 from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
 from buoyancy_mj.frames import LAST, Energy, Frame, Summary
-from buoyancy_mj.geoms import Hull, body_name
+from buoyancy_mj.hull import Hull
 from buoyancy_mj.plugin import water_in
 from buoyancy_mj.scene import Scene
 
@@ -44,7 +45,15 @@ class Simulation:
         if plugin_instances(self.model):
             self.buoyancy, self._acting = water_in(self.model), nullcontext
         else:
-            self.buoyancy = Buoyancy(self.model, scene.water, geoms=scene.geoms, drag=scene.drag, method=scene.method)
+            self.buoyancy = Buoyancy(
+                self.model,
+                scene.water,
+                geoms=scene.geoms,
+                hull=scene.hull,
+                fill=scene.fill,
+                drag=scene.drag,
+                method=scene.method,
+            )
             self._acting = self.buoyancy.installed
         floating = self.buoyancy.floating
         self.vehicle = floating[floating < bodies]
@@ -58,7 +67,7 @@ class Simulation:
         """Of the vehicle [kg]."""
         self.weight = self.mass * self.buoyancy.gravity
         """Of the vehicle [N]."""
-        self.displacement = float(scene.water.density * sum(hull.mesh.volume for hull in self.hulls))
+        self.displacement = float(scene.water.density * sum(hull.displacement for hull in self.hulls))
         """Mass of water that its hulls displace when fully under water [kg]."""
         self._check_scale()
         self.root = int(self.model.body_rootid[self.hulls[0].body])

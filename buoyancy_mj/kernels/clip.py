@@ -44,7 +44,7 @@ def _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
 
 
 @njit(cache=True)
-def _cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
+def cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
     """The wet part of a triangle that the surface cuts, by the depths w of its corners.
 
     Gives `_moments`, the fraction of its area, and the two ends of the cut, such that the waterplane
@@ -78,7 +78,7 @@ def _turned(r, x, y, z):
 
 
 @njit(cache=True, inline="always")
-def _placed(origin, r, x, y, z):
+def placed(origin, r, x, y, z):
     """A point of a frame, in the world."""
     tx, ty, tz = _turned(r, x, y, z)
     return origin[0] + tx, origin[1] + ty, origin[2] + tz
@@ -99,7 +99,7 @@ def _approach(waves, origin, r, cx, cy, cz, time, swell):
     the hull's frame, a bound of its curvature, and the largest wave number.
     """
     eta = g0 = g1 = g2 = curvature = steepest = 0.0
-    x, y, _ = _placed(origin, r, cx, cy, cz)
+    x, y, _ = placed(origin, r, cx, cy, cz)
     for w in range(waves.shape[0]):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
         k = math.hypot(kx, ky)
@@ -259,7 +259,7 @@ def _walk(
             if w0 > 0.0 and w1 > 0.0 and w2 > 0.0:
                 some, fraction = _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2), 1.0
             else:
-                some, fraction, one, other = _cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2)
+                some, fraction, one, other = cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2)
                 if many:
                     px, py, _ = _turned(r, one[0] - c0, one[1] - c1, one[2] - c2)
                     qx, qy, _ = _turned(r, other[0] - c0, other[1] - c1, other[2] - c2)
@@ -275,6 +275,8 @@ def _walk(
         i = after
     mx, my, mz = _turned(r, lx, ly, lz)
     cx, cy, _ = _turned(r, c0, c1, c2)
+    fill = middle[6]
+    i0, ix, iy, iz = fill * i0, fill * ix, fill * iy, fill * iz
     return i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q, -p, area
 
 
@@ -296,12 +298,12 @@ def is_rotation(r):
 def submerge_hulls(
     vertices,  # (v, 3) of all hulls, in the frame of each; leaf by leaf, so that leaves share none
     faces,  # (f, 3) into vertices, in the order of the leaves
-    areas,  # (f, 4) vector area of each face, and its length
+    areas,  # (f, 4) vector area of each face, times the part of its hull that displaces, and its length
     nodes,  # (h + 1,) first node of each hull
     spans,  # (n, 5) of the nodes: first face and last, first vertex and last, the node behind all below; see `tree`
     boxes,  # (n, 6)
-    moments,  # (n, 31)
-    whole,  # (h, 11) volume, centroid, area of each whole hull, middle and half sides of its bounding box
+    moments,  # (n, 31), likewise but for the last
+    whole,  # (h, 12) what each whole hull displaces, its centroid, its area, middle and half sides of its box, its part
     frames,  # (h,) row of each hull in positions and rotations
     positions,  # (n, 3) of the frames in the world
     rotations,  # (n, 9) world_from_frame, row-major
@@ -320,7 +322,7 @@ def submerge_hulls(
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
         # how deep the middle of its box lies, and how much shallower or deeper any point of it can be
-        x, y, z = _placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
+        x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
         depth = level + elevation(waves, x, y, time) - z
         ex, ey, ez = whole[h, 8], whole[h, 9], whole[h, 10]
         reach = abs(r[6]) * ex + abs(r[7]) * ey + abs(r[8]) * ez
@@ -330,7 +332,7 @@ def submerge_hulls(
             continue
         if depth >= reach:
             out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], whole[h, 4], 0.0
-            out[h, 1], out[h, 2], out[h, 3] = _placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
+            out[h, 1], out[h, 2], out[h, 3] = placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
             continue
         out[h, 0], out[h, 4], out[h, 5] = 0.0, 0.0, 0.0
         out[h, 1:4] = math.nan
@@ -343,7 +345,7 @@ def submerge_hulls(
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of
         if v >= whole[h, 0]:
             out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], area, p
-            out[h, 1], out[h, 2], out[h, 3] = _placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
+            out[h, 1], out[h, 2], out[h, 3] = placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
         elif v > 1e-14 * whole[h, 0]:
             out[h, 0], out[h, 4], out[h, 5] = v, area, p
             out[h, 1], out[h, 2], out[h, 3] = origin[0] + mx / v, origin[1] + my / v, origin[2] + mz / v
