@@ -17,6 +17,8 @@ from buoyancy_mj.errors import WaterError as WaterError
 from buoyancy_mj.exact import Exact as Exact
 from buoyancy_mj.frames import Frame as Frame
 from buoyancy_mj.frames import Summary as Summary
+from buoyancy_mj.hydrostatics import Hydrostatics as Hydrostatics
+from buoyancy_mj.hydrostatics import hydrostatics as hydrostatics
 from buoyancy_mj.loads import Loads as Loads
 from buoyancy_mj.loads import Portion as Portion
 from buoyancy_mj.mending import mended as mended
