@@ -3,10 +3,13 @@
 from buoyancy_mj.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.convex_hull import ConvexHull as ConvexHull
 from buoyancy_mj.drag import Drag as Drag
+from buoyancy_mj.equilibrium import Equilibrium as Equilibrium
+from buoyancy_mj.equilibrium import equilibrium as equilibrium
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
 from buoyancy_mj.errors import DivergenceError as DivergenceError
 from buoyancy_mj.errors import EngineError as EngineError
+from buoyancy_mj.errors import EquilibriumError as EquilibriumError
 from buoyancy_mj.errors import MeshError as MeshError
 from buoyancy_mj.errors import MethodError as MethodError
 from buoyancy_mj.errors import ModelError as ModelError

@@ -11,10 +11,14 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import catalog
 from buoyancy_mj.callbacks import PLUGIN, skips_passive
+from buoyancy_mj.choice import body_name
+from buoyancy_mj.equilibrium import rest
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, EngineError, ModelError, SceneError, choices
+from buoyancy_mj.geoms import displacing_hulls
 from buoyancy_mj.native import raised
 from buoyancy_mj.plugin import add_water
-from buoyancy_mj.scene import INTEGRATORS, Scene, Start
+from buoyancy_mj.scene import EQUILIBRIUM, INTEGRATORS, Scene, Start
+from buoyancy_mj.vessel import vessel_of
 
 ENVIRONMENT = "environment/"
 """What the names of the environment start with in a joined model; the vehicle's stay as they are."""
@@ -62,6 +66,8 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
     except mujoco.FatalError as error:
         raise raised() or error from None
     _place(model, data, scene.start, bodies)
+    if scene.start.at == EQUILIBRIUM:
+        _settle(model, data, scene, bodies)
     return model, data, bodies
 
 
@@ -178,3 +184,12 @@ def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int
         attitude = moved * Rotation.from_quat(pose[3:], scalar_first=True)
         data.qpos[q : q + 7] = [*(np.array(start.position) + arm), *attitude.as_quat(scalar_first=True)]
         data.qvel[v : v + 6] = [*(np.array(start.velocity) + np.cross(spin, arm)), *attitude.inv().apply(spin)]
+
+
+def _settle(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: int) -> None:
+    """Bring each of the vehicle's bodies that float to rest, from where it is."""
+    words = {"hull": scene.hull, "fill": scene.fill}
+    hulls = displacing_hulls(model, scene.geoms, range(1, bodies), **words)
+    for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
+        vessel = vessel_of(model, scene.water, data.qpos, body=body_name(model, root), geoms=scene.geoms, **words)
+        data.qpos[:] = rest(vessel).qpos

@@ -20,6 +20,8 @@ from buoyancy_mj.water import Water
 
 _VECTORS = ("cog_shift", "water.current", "start.position", "start.velocity", "start.angular_velocity")
 """Fields whose numbers may be set one by one, though all are missing."""
+EQUILIBRIUM = "equilibrium"
+"""Value of `Start.at`."""
 INTEGRATORS = {
     name.lower(): value
     for name, value in ((key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items())
@@ -49,8 +51,12 @@ class Start:
     """Of the root body (3,) [rad/s], its own frame."""
     keyframe: str | None = None
     """A keyframe of the vehicle, for its joints and controls; position and attitude come from here."""
+    at: str | None = None
+    """'equilibrium' to start at rest on still water, downhill from the attitude here; place and yaw stay."""
 
     def __post_init__(self) -> None:
+        if self.at not in (None, EQUILIBRIUM):
+            raise SceneError(f"start.at is '{self.at}'; possible: {EQUILIBRIUM}, or leave it out")
         numbers = (*self.position, self.roll, self.pitch, self.yaw, *self.velocity, *self.angular_velocity)
         if not all(math.isfinite(number) for number in numbers):
             raise SceneError(f"start holds {numbers}; every number must be finite")
