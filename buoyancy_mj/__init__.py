@@ -28,6 +28,8 @@ from buoyancy_mj.mending import mended as mended
 from buoyancy_mj.mesh import TriMesh as TriMesh
 from buoyancy_mj.plugin import add_water as add_water
 from buoyancy_mj.plugin import water_in as water_in
+from buoyancy_mj.righting import RightingArm as RightingArm
+from buoyancy_mj.righting import righting_arm as righting_arm
 from buoyancy_mj.scene import Scene as Scene
 from buoyancy_mj.scene import Start as Start
 from buoyancy_mj.scene import read_scene as read_scene

@@ -11,21 +11,15 @@ import trimesh
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj.choice import body_name
-from buoyancy_mj.errors import EquilibriumError
+from buoyancy_mj.balance import STRIDE, at_constant_displacement, balanced, turned
 from buoyancy_mj.hydrostatics import Hydrostatics, attitude, hydrostatics_of
 from buoyancy_mj.vessel import Afloat, Vessel, vessel_of
 from buoyancy_mj.water import Water
 
-NEUTRAL = 1e-9
-"""Part of its mass by which a vessel that hovers may differ from the water it displaces."""
-BALANCED = 1e-11
-"""Torque over weight times radius at which a vessel is at rest."""
 INDIFFERENT = 1e-6
 """Part of the largest eigenvalue below which nothing restores."""
 LEVEL, SOFT = 1e-6, 1e-2
 """Energy over weight times radius by which a valley may rise, and how soft it is beside what crosses it."""
-_STEPS, _LONGEST, _STRIDE = 200, 0.5, 0.1
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -82,9 +76,7 @@ def equilibrium(
 ) -> Equilibrium | tuple[Equilibrium, ...]:
     """The pose in which a vessel comes to rest, its joints held.
 
-    At the draft that carries its weight the energy is weight times the height of G over B, a smooth
-    function of attitude alone. It is made smallest by Newton steps with the exact stiffness, negative
-    curvature turned downhill, within a trust region; so each step leads down, and off a summit too.
+    Found by Newton steps that always lead down, see `balance.balanced`.
 
     Args:
         model: any MuJoCo model with a body that floats.
@@ -109,7 +101,7 @@ def equilibrium(
 
 def rest(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
     """The pose in which a vessel comes to rest from where it is, see `equilibrium`."""
-    afloat, steps = _balanced(vessel, vessel.rotation, stable)
+    afloat, steps = balanced(vessel, vessel.rotation, stable=stable)
     return _equilibrium(afloat, steps)
 
 
@@ -119,130 +111,12 @@ def stable_rests(vessel: Vessel) -> tuple[Equilibrium, ...]:
     kept: list[Afloat] = []
     for down in trimesh.creation.icosphere(subdivisions=1).vertices:
         turn, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [down])
-        afloat, steps = _balanced(vessel, turn.as_matrix(), True)
+        afloat, steps = balanced(vessel, turn.as_matrix())
         new = _equilibrium(afloat, steps)
         if new.stability != "unstable" and not any(_same(one, afloat) for one in kept):
             kept.append(afloat)
             found.append(new)
     return tuple(sorted(found, key=lambda one: one.energy))
-
-
-def floated(vessel: Vessel, rotation: NDArray[np.float64], height: float | None = None) -> Afloat:
-    """The vessel turned by world_from_vessel (3, 3), at the height at which it displaces its mass.
-
-    Args:
-        vessel: one that floats.
-        rotation: its attitude.
-        height: of its centre of gravity, where the search begins [m]; None for the level.
-    """
-    level, wanted = vessel.water.level, vessel.mass / vessel.water.density
-    low, high = level - vessel.radius, level + vessel.radius
-    z = level if height is None or not low < height < high else height
-    while True:
-        afloat = vessel.at([vessel.position[0], vessel.position[1], z], rotation)
-        excess = afloat.volume - wanted
-        low, high = (z, high) if excess > 0.0 else (low, z)
-        if abs(excess) <= 1e-14 * vessel.volume or high - low <= 1e-15 * vessel.radius:
-            return afloat
-        # Newton by the waterplane, halving where that leads out
-        area = afloat.waterplane[0]
-        z = z + excess / area if area > 0.0 else math.inf
-        if not low < z < high:
-            z = 0.5 * (low + high)
-            if not low < z < high:
-                return afloat
-
-
-def _balanced(vessel: Vessel, rotation: NDArray[np.float64], stable: bool) -> tuple[Afloat, int]:
-    """Where the torques vanish at the draft that carries the weight, and the steps it took."""
-    surplus = vessel.water.density * vessel.volume - vessel.mass
-    name = body_name(vessel.model, vessel.root)
-    if surplus < -NEUTRAL * vessel.mass:
-        raise EquilibriumError(
-            f"'{name}' sinks: it weighs {vessel.mass:.4g} kg and displaces {vessel.mass + surplus:.4g} kg of water fully "
-            f"submerged, {-surplus:.4g} kg too little; take mass out or add foam (see ballast)"
-        )
-    if surplus <= NEUTRAL * vessel.mass:
-        return _hovering(vessel, rotation, stable), 1
-    afloat = floated(vessel, rotation)
-    reach = _LONGEST
-    scale = vessel.weight * vessel.radius
-    for count in range(_STEPS):
-        torque, stiffness = afloat.force[1:], _at_constant_displacement(afloat)
-        values, axes = np.linalg.eigh(stiffness)
-        size = float(np.linalg.norm(torque)) / scale
-        if size <= BALANCED:
-            if not stable:
-                return afloat, count
-            # off a summit, or a saddle; where the curvature tells nothing, look a little further
-            ways = [way * part for part in (1.0, 0.1, 0.01) for way in (1.0, -1.0)] if values[0] < 1e-6 * scale else []
-            pushed = (_turned(afloat, way * _STRIDE * axes[:, 0]) for way in ways)
-            lower = next((pose for pose in pushed if pose.energy < afloat.energy - 1e-10 * scale), None)
-            if lower is None:
-                return afloat, count
-            afloat = lower
-            continue
-        step = axes @ _step(values, axes.T @ torque, reach, downhill=stable)
-        trial = _turned(afloat, step)
-        if _better(trial, afloat, scale, stable):
-            reach = min(2.0 * reach, _LONGEST)
-            afloat = trial
-        else:
-            reach = 0.25 * min(reach, float(np.linalg.norm(step)))
-            if reach < 1e-13:
-                break
-    # flat faces in the surface may leave a kink, where torques change sign at once
-    if stable and reach < 1e-9:
-        return afloat, count
-    raise EquilibriumError(
-        f"no balance of '{name}' was found near the start, only one that is off by {size * scale:.3g} N m after {count + 1} "
-        "steps; start elsewhere" + ("" if stable else ", or look for a stable one")
-    )
-
-
-def _step(values: NDArray[np.float64], along: NDArray[np.float64], reach: float, *, downhill: bool) -> NDArray[np.float64]:
-    """A turn (2,) [rad] along the axes of stiffness."""
-    least = 1e-9 * np.abs(values).max() + 1e-300
-    divisor = np.where(np.abs(values) > least, values, np.copysign(least, values))
-    step = along / (np.abs(divisor) if downhill else divisor)
-    length = float(np.linalg.norm(step))
-    return step * (reach / length) if length > reach else step
-
-
-def _better(trial: Afloat, afloat: Afloat, scale: float, stable: bool) -> bool:
-    """Whether a step is to be taken."""
-    less = bool(np.linalg.norm(trial.force[1:]) < np.linalg.norm(afloat.force[1:]))
-    if not stable:
-        return less
-    # within rounding of the energy the torque tells more
-    gain = afloat.energy - trial.energy
-    return gain > 1e-13 * scale or (gain > -1e-13 * scale and less)
-
-
-def _at_constant_displacement(afloat: Afloat) -> NDArray[np.float64]:
-    """Restoring torques per turn about x and y (2, 2) [N m], the draft following so that the volume stays."""
-    whole = afloat.stiffness
-    heave = whole[0, 0]
-    if heave <= 1e-12 * afloat.vessel.weight / afloat.vessel.radius:
-        return whole[1:, 1:]
-    return whole[1:, 1:] - np.outer(whole[1:, 0], whole[0, 1:]) / heave
-
-
-def _hovering(vessel: Vessel, rotation: NDArray[np.float64], stable: bool) -> Afloat:
-    """Wholly submerged, its centre of buoyancy over its centre of gravity, or if that is nearer and will do, under it."""
-    arm = rotation @ vessel.centroid
-    turned = rotation
-    if np.linalg.norm(arm) > 1e-12 * vessel.radius:
-        up = 1.0 if stable or arm[2] >= 0.0 else -1.0
-        # of all turns that bring it upright the shortest
-        axis, aim = np.cross(arm, [0.0, 0.0, up]), up * arm[2]
-        flat = float(np.linalg.norm(axis))
-        axis = axis / flat if flat > 0.0 else np.array([1.0, 0.0, 0.0])
-        turned = Rotation.from_rotvec(math.atan2(flat, aim) * axis).as_matrix() @ rotation
-    top = float((vessel.points @ turned[2]).max())
-    place = vessel.position.copy()
-    place[2] = min(place[2], vessel.water.level - top)
-    return vessel.at(place, turned)
 
 
 def _equilibrium(afloat: Afloat, steps: int) -> Equilibrium:
@@ -273,11 +147,11 @@ def _same(one: Afloat, two: Afloat) -> bool:
         return False
     if _angle(one, two) < 1e-4:
         return True
-    soft, stiff = np.linalg.eigvalsh(_at_constant_displacement(one))
+    soft, stiff = np.linalg.eigvalsh(at_constant_displacement(one))
     if stiff < SOFT * scale:
         return True
     return bool(soft < SOFT * stiff) and any(
-        abs(pose.energy - one.energy) <= LEVEL * scale and _angle(pose, two) <= _STRIDE
+        abs(pose.energy - one.energy) <= LEVEL * scale and _angle(pose, two) <= STRIDE
         for way in (1.0, -1.0)
         for pose in _valley(one, way)
     )
@@ -286,24 +160,18 @@ def _same(one: Afloat, two: Afloat) -> bool:
 def _valley(afloat: Afloat, way: float) -> Iterator[Afloat]:
     """Poses along the softest direction, the stiff one kept in balance, once round or until they rise."""
     base, scale = afloat.energy, afloat.vessel.weight * afloat.vessel.radius
-    axis = way * np.linalg.eigh(_at_constant_displacement(afloat))[1][:, 0]
-    for _ in range(math.ceil(2.0 * math.pi / _STRIDE)):
-        afloat = _turned(afloat, _STRIDE * axis)
+    axis = way * np.linalg.eigh(at_constant_displacement(afloat))[1][:, 0]
+    for _ in range(math.ceil(2.0 * math.pi / STRIDE)):
+        afloat = turned(afloat, STRIDE * axis)
         for _ in range(2):
-            values, axes = np.linalg.eigh(_at_constant_displacement(afloat))
+            values, axes = np.linalg.eigh(at_constant_displacement(afloat))
             stiff = axes[:, 1]
             if values[1] > 0.0:
-                afloat = _turned(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
+                afloat = turned(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
         axis = axes[:, 0] * np.copysign(1.0, axes[:, 0] @ axis)
         yield afloat
         if afloat.energy > base + LEVEL * scale:
             return
-
-
-def _turned(afloat: Afloat, turn: NDArray[np.float64]) -> Afloat:
-    """Turned about horizontal axes by (2,) [rad], at the draft that carries its weight."""
-    rotation = Rotation.from_rotvec([*turn, 0.0]).as_matrix() @ afloat.rotation
-    return floated(afloat.vessel, rotation, float(afloat.position[2]))
 
 
 def _angle(one: Afloat, two: Afloat) -> float:

@@ -55,6 +55,8 @@ class Vessel:
     """The hulls, in the vessel's axes."""
     fills: NDArray[np.float64]
     """Part of each hull's volume that displaces (h,)."""
+    sites: dict[str, NDArray[np.float64]]
+    """Named sites on it, each (3,) [m], in the vessel's axes."""
 
     @functools.cached_property
     def volume(self) -> float:
@@ -238,6 +240,11 @@ def vessel_of(
         bodies=tuple(one.body for one in own),
         meshes=tuple(one.mesh.transformed(t, p) for one, t, p in zip(own, turns, places, strict=True)),
         fills=np.array([one.fill for one in own]),
+        sites={
+            str(model.site(i).name): turn @ (data.site_xpos[i] - data.xpos[root]) - centre
+            for i in range(model.nsite)
+            if model.site(i).name and model.body_rootid[model.site_bodyid[i]] == root
+        },
     )
 
 
