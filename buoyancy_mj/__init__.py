@@ -1,10 +1,14 @@
 """Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, exact on its own meshes."""
 
+from buoyancy_mj.ballast import Ballast as Ballast
+from buoyancy_mj.ballast import Placed as Placed
+from buoyancy_mj.ballast import ballast as ballast
 from buoyancy_mj.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.convex_hull import ConvexHull as ConvexHull
 from buoyancy_mj.drag import Drag as Drag
 from buoyancy_mj.equilibrium import Equilibrium as Equilibrium
 from buoyancy_mj.equilibrium import equilibrium as equilibrium
+from buoyancy_mj.errors import BallastError as BallastError
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
 from buoyancy_mj.errors import DivergenceError as DivergenceError

@@ -32,6 +32,10 @@ class MethodError(BuoyancyError):
     """A way to find what is under water that does not exist, or an option of it that makes no sense."""
 
 
+class BallastError(BuoyancyError):
+    """A draft or attitude that no ballast at the given places can bring."""
+
+
 class EquilibriumError(BuoyancyError):
     """A vessel that sinks, or a pose that it cannot be brought to."""
 

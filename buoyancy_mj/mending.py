@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
 from buoyancy_mj.kernels.rays import misenclosed
-from buoyancy_mj.mesh import TriMesh, checked_arrays, open_edges
+from buoyancy_mj.mesh import TriMesh, checked_arrays, open_edges, winding
 
 IN_DOUBT = 0.01
 """Fraction of a mesh's volume that may be in doubt before it is refused."""
@@ -166,22 +166,12 @@ def _outward(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.i
         if not hollow:
             continue
         # an inward piece inside a solid one bounds a cavity, anywhere else it is a mistake
-        if any(_winding(v, other, v[piece[0, 0]]) > 0.5 for other in solid):
+        if any(winding(v, other, v[piece[0, 0]]) > 0.5 for other in solid):
             sealed -= _volume(v, piece)
         else:
             solid.append(piece[:, ::-1])
             turned += 1
     return np.vstack(solid), told or (f"{turned} of its {len(pieces)} pieces" if turned else ""), sealed
-
-
-def _winding(v: NDArray[np.float64], f: NDArray[np.int64], point: NDArray[np.float64]) -> float:
-    """How often a closed surface winds around a point: its solid angle over 4 pi (van Oosterom, Strackee 1983)."""
-    a, b, c = (v - point)[f.T]
-    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
-    numerator = np.einsum("ij,ij->i", a, np.cross(b, c))
-    dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
-    denominator = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
-    return float(np.arctan2(numerator, denominator).sum() / (2.0 * np.pi))
 
 
 def _volume(v: NDArray[np.float64], f: NDArray[np.int64]) -> float:

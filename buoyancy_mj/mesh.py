@@ -159,6 +159,16 @@ def open_edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.repeat(directed, np.abs(net), axis=0)
 
 
+def winding(v: NDArray[np.float64], f: NDArray[np.int64], point: NDArray[np.float64]) -> float:
+    """How often a closed surface winds around a point: its solid angle over 4 pi (van Oosterom, Strackee 1983)."""
+    a, b, c = (v - point)[f.T]
+    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    numerator = np.einsum("ij,ij->i", a, np.cross(b, c))
+    dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
+    denominator = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
+    return float(np.arctan2(numerator, denominator).sum() / (2.0 * np.pi))
+
+
 def refined(
     vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -164,7 +164,7 @@ def test_an_area_outside_of_the_curve_is_told():
 
 def test_all_trees_of_a_model_have_sites_of_their_own():
     model = mujoco.MjModel.from_xml_string(
-        '<mujoco><worldbody><site name="downflooding_quay" pos="0 0 1"/><body name="tug"><freejoint/>'
-        '<geom type="box" size="1 .5 .3" mass="600"/><site name="downflooding_tug" pos="0 0 .5"/></body></worldbody></mujoco>'
+        '<mujoco><worldbody><site name="downflooding_quay" pos="0 0 1"/><body name="tug"><freejoint/><geom type="box" '
+        'size="1 .5 .3" mass="600"/><site name="downflooding_tug" pos="0 0 .5"/></body></worldbody></mujoco>'
     )
     assert list(righting_arm(model, heel=[0.0, 0.1]).immersed) == ["downflooding_tug"]
