@@ -13,8 +13,9 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj import shapes
 from buoyancy_mj.choice import GEOMS, body_name
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
-from buoyancy_mj.hull import close_pairs, solid_of
+from buoyancy_mj.hull import close_pairs
 from buoyancy_mj.hydrostatics import Hydrostatics, attitude, hydrostatics_of
+from buoyancy_mj.mesh import solid_of
 from buoyancy_mj.placing import LEAST, Place, least, places_for
 from buoyancy_mj.vessel import Afloat, Vessel, vessel_of
 from buoyancy_mj.water import Water
@@ -147,8 +148,8 @@ def ballast(
     numbers = [value for value in (draft, reserve, heel, trim, bg) if value is not None]
     if not all(math.isfinite(value) for value in numbers) or not (foam_density > 0.0 and mass_density > 0.0):
         raise ModelError(
-            f"draft or reserve, heel, trim and bg are {numbers}, densities {mass_density:g} and {foam_density:g}; all must be "
-            "finite, densities positive"
+            f"draft or reserve, heel, trim and bg are {numbers}, densities {mass_density:g} and {foam_density:g}; all must "
+            "be finite, densities positive"
         )
     vessel = vessel_of(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
     pose = _wanted(vessel, draft, heel, trim)
@@ -245,7 +246,7 @@ def _check(vessel: Vessel, found: Hydrostatics, reserve: float, before: int) -> 
     for i, j in close_pairs(vessel.meshes):
         pair = vessel.names[i], vessel.names[j]
         if max(i, j) >= before and vessel.fills[i] == vessel.fills[j] == 1.0:
-            solids = solid_of(vessel.meshes[i]), solid_of(vessel.meshes[j])
+            solids = solid_of(*vessel.meshes[i].compact), solid_of(*vessel.meshes[j].compact)
             common = (solids[0] ^ solids[1]).volume() if solids[0] and solids[1] else 0.0
             if common > 1e-3 * min(vessel.meshes[i].volume, vessel.meshes[j].volume):
                 warnings.warn(

@@ -11,7 +11,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning
-from buoyancy_mj.mesh import TriMesh
+from buoyancy_mj.mesh import TriMesh, solid_of
 
 _Solid = Callable[["Hull"], manifold3d.Manifold]
 OVERLAP = 1e-6
@@ -70,7 +70,7 @@ def joined(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
 
 def solid_in_body(hull: Hull) -> manifold3d.Manifold:
     """A hull in the frame of its body, for booleans; empty, with a warning, where its mesh is no manifold."""
-    solid = solid_of(hull.mesh_in_body)
+    solid = solid_of(*hull.mesh_in_body.compact)
     if solid is None:
         warnings.warn(
             f"geom '{hull.name}': more than two faces meet at an edge of its mesh; "
@@ -80,13 +80,6 @@ def solid_in_body(hull: Hull) -> manifold3d.Manifold:
         )
         return manifold3d.Manifold()
     return solid
-
-
-def solid_of(mesh: TriMesh) -> manifold3d.Manifold | None:
-    """A mesh for booleans; None where it is no manifold."""
-    vertices, faces = mesh.compact
-    solid = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64)))
-    return solid if solid.status() == manifold3d.Error.NoError else None
 
 
 def close_pairs(meshes: Sequence[TriMesh]) -> list[tuple[int, int]]:

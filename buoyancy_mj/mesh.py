@@ -3,6 +3,7 @@
 import dataclasses
 from functools import cached_property
 
+import manifold3d
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -167,6 +168,12 @@ def winding(v: NDArray[np.float64], f: NDArray[np.int64], point: NDArray[np.floa
     dots = [np.einsum("ij,ij->i", p, q) for p, q in ((a, b), (b, c), (c, a))]
     denominator = la * lb * lc + dots[0] * lc + dots[1] * la + dots[2] * lb
     return float(np.arctan2(numerator, denominator).sum() / (2.0 * np.pi))
+
+
+def solid_of(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> manifold3d.Manifold | None:
+    """A closed mesh without spare vertices, for booleans; None where it is no manifold."""
+    solid = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64)))
+    return solid if solid.status() == manifold3d.Error.NoError else None
 
 
 def refined(

@@ -4,6 +4,7 @@ import trimesh
 
 from buoyancy_mj import MeshError, mended, shapes
 from buoyancy_mj.kernels.rays import misenclosed
+from buoyancy_mj.mending import diagnosed
 
 BOX = shapes.box((1.0, 0.5, 0.3))
 SPHERE = trimesh.creation.icosphere(subdivisions=4)
@@ -83,15 +84,24 @@ def test_a_small_hole_is_closed_and_its_doubt_told():
 
 def test_an_open_box_is_refused_with_the_volume_in_doubt():
     with pytest.raises(
-        MeshError, match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, or leave"
+        MeshError, match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, take its"
     ):
         mended(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
 
 
-def test_a_mesh_that_crosses_itself_is_refused():
+def test_pieces_that_overlap_are_joined_and_the_volume_told():
     other = BOX.transformed(np.eye(3), (0.5, 0.0, 0.0))
-    with pytest.raises(MeshError, match=r"pair: it crosses itself: about .* is enclosed twice and 0 m\^3 inside out"):
-        mended(np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), name="pair")
+    mesh, notices = mended(np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), name="pair")
+    assert mesh.volume == pytest.approx(1.2 + 0.3, rel=1e-12)
+    assert notices == ["pair: its 2 pieces overlap; they were joined, and 0.9 m^3 no longer count twice"]
+
+
+def test_a_mesh_that_crosses_itself_is_refused():
+    # a ball whose top was pulled through its bottom
+    ball = SPHERE.vertices.copy()
+    ball[ball[:, 2] > 0.7, 2] -= 2.5
+    with pytest.raises(MeshError, match=r"ring: it crosses itself: about .* is enclosed twice and .* inside out, .* --hull"):
+        mended(ball, SPHERE.faces, name="ring")
 
 
 @pytest.mark.parametrize("scale", [1e6, 1e-6])
@@ -120,3 +130,31 @@ def test_rays_measure_what_two_boxes_enclose_twice():
 @pytest.mark.parametrize("solid", [BOX, shapes.cylinder(0.3, 1.0), shapes.capsule(0.3, 0.5), shapes.sphere(1.0)])
 def test_rays_find_no_fault_with_a_sound_solid(solid):
     assert misenclosed(solid.vertices, solid.faces, 200) == (0.0, 0.0)
+
+
+def test_a_diagnosis_counts_what_it_found():
+    faces = np.vstack([SPHERE.faces[3:], [[0, 0, 1]], SPHERE.faces[5:6]])
+    faces[10] = faces[10][::-1]
+    found = diagnosed(SPHERE.vertices, faces, name="float")
+    assert (found.triangles, found.degenerate, found.duplicates, found.backwards) == (len(faces), 1, 1, 1)
+    assert [hole.edges for hole in found.holes] == [9]
+    assert 0.0 < found.doubt < 1e-3 * SPHERE.volume
+    assert found.holes[0].length == pytest.approx(9 * 0.0692, rel=0.1)
+    assert found.pieces == 1
+    assert found.refusal == ""
+    assert found.extents == pytest.approx((2.0, 2.0, 2.0), rel=1e-3)
+
+
+def test_a_diagnosis_of_what_is_refused_keeps_what_it_found():
+    tub = diagnosed(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
+    assert tub.mesh is None
+    assert tub.refusal.startswith("tub: it is open: 1 hole(s) with 4 edges")
+    assert tub.refusal.endswith("close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)")
+    assert [hole.length for hole in tub.holes] == pytest.approx([6.0])
+
+
+def test_a_diagnosis_counts_pieces_and_inner_shells():
+    inside = shapes.box((0.9, 0.4, 0.2))
+    found = diagnosed(*pair(inside, inward=True))
+    assert (found.pieces, found.shells) == (2, 1)
+    assert found.sealed == pytest.approx(0.576)
