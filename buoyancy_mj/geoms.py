@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from buoyancy_mj import shapes
 from buoyancy_mj.choice import SOLIDS, considered, fills_of, geom_name, shapes_of
-from buoyancy_mj.errors import BuoyancyWarning
+from buoyancy_mj.errors import BuoyancyWarning, MeshError
 from buoyancy_mj.hull import Hull, joined
-from buoyancy_mj.mending import convex_of, mended
+from buoyancy_mj.mending import Diagnosis, convex_of, diagnosed
 from buoyancy_mj.mesh import TriMesh
 
 _MESH, _BOX, _SPHERE, _ELLIPSOID, _CYLINDER, _CAPSULE = SOLIDS
@@ -43,7 +43,16 @@ def displacing_hulls(
         ModelError: no geom is left, or a pattern matches none.
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
-    chosen = [verdict.geom for verdict in considered(model, geoms, bodies) if verdict.taken]
+    return hulls_of(model, [verdict.geom for verdict in considered(model, geoms, bodies) if verdict.taken], hull, fill)
+
+
+def hulls_of(
+    model: mujoco.MjModel,
+    chosen: Sequence[int],
+    hull: str | Sequence[str] | None = None,
+    fill: str | Sequence[str] | None = None,
+) -> tuple[Hull, ...]:
+    """The hulls of chosen geoms, see `displacing_hulls`."""
     forms, fills = shapes_of(model, chosen, hull), fills_of(model, chosen, fill)
     known: dict[tuple[Any, ...], TriMesh] = {}
     data = mujoco.MjData(model)
@@ -51,6 +60,15 @@ def displacing_hulls(
     return joined(
         [_hull(model, data, g, _mesh(model, g, forms.get(g) == "convex", known), fills.get(g, 1.0)) for g in chosen]
     )
+
+
+def diagnosis(model: mujoco.MjModel, geom: int) -> Diagnosis | None:
+    """What is wrong with the mesh of a geom, once for each mesh; None for other geoms, with which nothing is."""
+    if model.geom_type[geom] != _MESH:
+        return None
+    arrays = geom_mesh(model, geom)
+    assert arrays is not None
+    return _diagnosed(*(values.tobytes() for values in arrays), mesh_name(model, geom))
 
 
 def geom_mesh(model: mujoco.MjModel, geom: int) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
@@ -98,16 +116,17 @@ def _mesh(model: mujoco.MjModel, geom: int, convex: bool, known: dict[tuple[Any,
     key = (convex, *((_MESH, int(model.geom_dataid[geom])) if is_mesh else _primitive(model, geom)))
     if key in known:
         return known[key]
+    found = None if convex else diagnosis(model, geom)
+    if found is not None:
+        if found.mesh is None:
+            raise MeshError(found.refusal)
+        known[key] = found.mesh
+        for notice in found.notices:
+            warnings.warn(notice, BuoyancyWarning, stacklevel=2)
+        return found.mesh
     arrays = geom_mesh(model, geom)
     assert arrays is not None
-    if not is_mesh:
-        known[key] = TriMesh(*arrays)
-    elif convex:
-        known[key] = convex_of(arrays[0], mesh_name(model, geom))
-    else:
-        known[key], notices = _mended(*(values.tobytes() for values in arrays), mesh_name(model, geom))
-        for notice in notices:
-            warnings.warn(notice, BuoyancyWarning, stacklevel=2)
+    known[key] = convex_of(arrays[0], mesh_name(model, geom)) if is_mesh else TriMesh(*arrays)
     return known[key]
 
 
@@ -121,6 +140,6 @@ def mesh_name(model: mujoco.MjModel, geom: int) -> str:
 
 
 @functools.lru_cache(maxsize=64)
-def _mended(vertices: bytes, faces: bytes, name: str) -> tuple[TriMesh, list[str]]:
-    """`mended`, once for each mesh: the same vehicle is read again and again, for each run of a sweep."""
-    return mended(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3), name=name)
+def _diagnosed(vertices: bytes, faces: bytes, name: str) -> Diagnosis:
+    """`diagnosed`, once for each mesh: the same vehicle is read again and again, for each run of a sweep."""
+    return diagnosed(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3), name=name)

@@ -13,6 +13,7 @@ from buoyancy_mj.choice import body_name
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.exact import PackedHulls
 from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.hull import Hull
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.mesh import TriMesh
 from buoyancy_mj.water import Water
@@ -198,11 +199,22 @@ def vessel_of(
             along -z, no geom that displaces water.
         MeshError: a mesh that bounds no volume.
     """
+    return vessel_with(model, displacing_hulls(model, geoms, hull=hull, fill=fill), water, qpos, body=body)
+
+
+def vessel_with(
+    model: mujoco.MjModel,
+    hulls: Sequence[Hull],
+    water: Water | None = None,
+    qpos: ArrayLike | None = None,
+    *,
+    body: str | None = None,
+) -> Vessel:
+    """A vessel of a model, with these hulls; see `vessel_of`."""
     sea = water or Water()
     x, y, z = model.opt.gravity
     if x != 0.0 or y != 0.0 or not z < 0.0 or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
         raise ModelError(f"gravity is {x:g} {y:g} {z:g} or disabled; floating needs it along -z, as in gravity='0 0 -9.81'")
-    hulls = displacing_hulls(model, geoms, hull=hull, fill=fill)
     root = _root(model, [one.body for one in hulls], body)
     data = mujoco.MjData(model)
     data.qpos[:] = _coordinates(model, qpos, root)
