@@ -71,6 +71,18 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
     return model, data, bodies
 
 
+def vehicle_spec(path: Path) -> mujoco.MjSpec:
+    """A vehicle's file, not yet compiled, with a free joint if it has none and without water of its own.
+
+    Raises:
+        ModelError: MuJoCo refuses it, or it has no body that could float.
+    """
+    spec = catalog.read_spec(path)
+    _free(spec, path)
+    _leave_out_own_water(spec)
+    return spec
+
+
 def _free(spec: mujoco.MjSpec, path: Path) -> None:
     """Give the vehicle a free joint, unless a body of it already floats or moves on joints of its own."""
     roots = [body for body in spec.worldbody.bodies if not body.mocap]

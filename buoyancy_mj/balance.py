@@ -10,8 +10,8 @@ from buoyancy_mj.choice import body_name
 from buoyancy_mj.errors import EquilibriumError
 from buoyancy_mj.vessel import Afloat, Vessel
 
-NEUTRAL = 1e-9
-"""Part of its mass by which a vessel that hovers may differ from the water it displaces."""
+NEUTRAL = 1e-6
+"""Part of its mass by which a vessel that hovers may differ from its water: MuJoCo keeps vertices in single precision."""
 BALANCED = 1e-11
 """Torque over weight times radius at which a vessel is at rest."""
 STRIDE = 0.1

@@ -106,8 +106,12 @@ def geom_name(model: mujoco.MjModel, geom: int) -> str:
     name = model.geom(geom).name
     if name:
         return str(name)
-    kind = mujoco.mjtGeom(int(model.geom_type[geom])).name.removeprefix("mjGEOM_").lower()
-    return f"{body_name(model, int(model.geom_bodyid[geom]))}/{kind} {geom}"
+    return f"{body_name(model, int(model.geom_bodyid[geom]))}/{geom_kind(model, geom)} {geom}"
+
+
+def geom_kind(model: mujoco.MjModel, geom: int) -> str:
+    """'mesh', 'box', 'sphere', ..."""
+    return mujoco.mjtGeom(int(model.geom_type[geom])).name.removeprefix("mjGEOM_").lower()
 
 
 def body_name(model: mujoco.MjModel, body: int) -> str:
@@ -118,8 +122,7 @@ def body_name(model: mujoco.MjModel, body: int) -> str:
 def _refusal(model: mujoco.MjModel, geom: int, bodies: Sequence[int] | None) -> str:
     """Why a geom can never displace water; '' if it can."""
     if model.geom_type[geom] not in SOLIDS:
-        kind = mujoco.mjtGeom(int(model.geom_type[geom])).name.removeprefix("mjGEOM_").lower()
-        return f"a {kind} bounds no volume"
+        return f"a {geom_kind(model, geom)} bounds no volume"
     if not model.body_weldid[_body(model, geom)]:
         return "its body cannot move"
     if bodies is not None and _body(model, geom) not in bodies:

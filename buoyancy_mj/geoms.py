@@ -2,7 +2,7 @@
 
 import functools
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import mujoco
@@ -43,17 +43,14 @@ def displacing_hulls(
         ModelError: no geom is left, or a pattern matches none.
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
-    return hulls_of(model, [verdict.geom for verdict in considered(model, geoms, bodies) if verdict.taken], hull, fill)
+    chosen = [verdict.geom for verdict in considered(model, geoms, bodies) if verdict.taken]
+    return hulls_of(model, chosen, shapes_of(model, chosen, hull), fills_of(model, chosen, fill))
 
 
 def hulls_of(
-    model: mujoco.MjModel,
-    chosen: Sequence[int],
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
+    model: mujoco.MjModel, chosen: Sequence[int], forms: Mapping[int, str], fills: Mapping[int, float]
 ) -> tuple[Hull, ...]:
-    """The hulls of chosen geoms, see `displacing_hulls`."""
-    forms, fills = shapes_of(model, chosen, hull), fills_of(model, chosen, fill)
+    """The hulls of chosen geoms, with the shape and the fill of those that have one; see `displacing_hulls`."""
     known: dict[tuple[Any, ...], TriMesh] = {}
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)

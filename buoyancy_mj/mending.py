@@ -76,6 +76,13 @@ class Diagnosis:
     """The hull; None if it was refused."""
 
     @property
+    def mended(self) -> bool:
+        """Whether it came otherwise than it is now."""
+        return bool(
+            self.degenerate or self.duplicates or self.backwards or self.holes or self.inverted or self.shells or self.joined
+        )
+
+    @property
     def doubt(self) -> float:
         """Volume that its holes put in doubt [m^3]."""
         return sum(hole.doubt for hole in self.holes)

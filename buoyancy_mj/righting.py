@@ -88,7 +88,8 @@ def righting_arm(
 
     Heel and trim are roll and pitch as in `Start`: turned about the horizontal axis across by the
     trim, after the heel. With trim free no torque is left about that axis; of several balances it is
-    the one nearest to that at the heel before, and where none is near the curve ends with a `BuoyancyWarning`.
+    the one nearest to that at the heel before. Where that ends, the next one downhill follows, unless
+    it is end over end: then the curve ends, with a `BuoyancyWarning`.
 
     Args:
         model: any MuJoCo model with a body that floats.
@@ -174,7 +175,11 @@ class _Heeled:
         height = None if last is None else float(last.position[2])
         if not self.free:
             return floated(self.vessel, turn, height)
-        afloat, _ = balanced(self.vessel, turn, height, free=self.across, stable=False)
+        try:
+            afloat, _ = balanced(self.vessel, turn, height, free=self.across, stable=False)
+        except EquilibriumError:
+            # where the balance ends, the vessel goes downhill to another
+            afloat, _ = balanced(self.vessel, turn, height, free=self.across)
         # the cosine of the trim
         if self._turn(afloat)[2, 1:] @ [math.sin(heel), math.cos(heel)] < 0.0:
             raise EquilibriumError(
@@ -202,8 +207,10 @@ def _vanishing(
     if not ahead or gz[ahead].max() <= 0.0:
         return math.nan
     best = ahead[int(gz[ahead].argmax())]
+    # upside down a symmetric vessel has none but for rounding
+    least = 1e-9 * heeled.vessel.radius
     for i in range(best, len(heels) - 1):
-        if gz[i] > 0.0 >= gz[i + 1]:
+        if gz[i] > least >= gz[i + 1]:
             return _root(heeled, heeled.arm, poses[i], heels[i], heels[i + 1])
     return math.nan
 

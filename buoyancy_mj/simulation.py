@@ -20,9 +20,7 @@ from buoyancy_mj.frames import LAST, Energy, Frame, Summary
 from buoyancy_mj.hull import Hull
 from buoyancy_mj.plugin import water_in
 from buoyancy_mj.scene import Scene
-
-PLAUSIBLE = 1e-4, 1e4
-"""Displaced over own mass, fully under water, of anything real: a lead weight has 0.09, an airship in water 800."""
+from buoyancy_mj.vessel import PLAUSIBLE
 
 
 class Simulation:

@@ -19,6 +19,8 @@ from buoyancy_mj.mesh import TriMesh
 from buoyancy_mj.water import Water
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
+PLAUSIBLE = 1e-4, 1e4
+"""Displaced over own mass, fully under water, of anything real: a lead weight has 0.09, an airship in water 800."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -81,6 +83,11 @@ class Vessel:
         return np.vstack([mesh.compact[0] for mesh in self.meshes])
 
     @property
+    def free(self) -> bool:
+        """Whether its root has a free joint."""
+        return _is_free(self.model, self.root)
+
+    @property
     def weight(self) -> float:
         """Of all bodies [N]."""
         return self.mass * self.gravity
@@ -108,11 +115,11 @@ class Vessel:
         Raises:
             ModelError: its root has no free joint.
         """
-        joint = int(self.model.body_jntadr[self.root])
-        if joint < 0 or self.model.jnt_type[joint] != _FREE:
+        if not self.free:
             raise ModelError(
                 f"body '{body_name(self.model, self.root)}' hangs on joints and is not free to float; give it a <freejoint/>"
             )
+        joint = int(self.model.body_jntadr[self.root])
         qpos, start = self.qpos.copy(), int(self.model.jnt_qposadr[joint])
         qpos[start : start + 3] = afloat.position - afloat.rotation @ self.root_from_vessel
         qpos[start + 3 : start + 7] = Rotation.from_matrix(afloat.rotation).as_quat(scalar_first=True)
@@ -275,8 +282,7 @@ def _coordinates(model: mujoco.MjModel, qpos: ArrayLike | None, root: int) -> ND
     if qpos is None:
         return model.qpos0.copy()
     given = np.asarray(qpos, float)
-    joint = int(model.body_jntadr[root])
-    free = joint >= 0 and model.jnt_type[joint] == _FREE
+    joint, free = int(model.body_jntadr[root]), _is_free(model, root)
     if given.shape == (7,) and free and model.nq != 7:
         start, whole = int(model.jnt_qposadr[joint]), model.qpos0.copy()
         whole[start : start + 7] = given
@@ -287,3 +293,8 @@ def _coordinates(model: mujoco.MjModel, qpos: ArrayLike | None, root: int) -> ND
             + (", or position and quaternion (7,) of its free joint" if free else "")
         )
     return given
+
+
+def _is_free(model: mujoco.MjModel, root: int) -> bool:
+    joint = int(model.body_jntadr[root])
+    return joint >= 0 and int(model.jnt_type[joint]) == _FREE
