@@ -23,6 +23,12 @@ from buoyancy_mj.vessel import vessel_of
 ENVIRONMENT = "environment/"
 """What the names of the environment start with in a joined model; the vehicle's stay as they are."""
 _FREE = mujoco.mjtJoint.mjJNT_FREE
+_MENDS = {
+    "inertia": "a body that floats needs mass and inertia: give it an <inertial>, or bound them by <compiler boundmass "
+    "boundinertia>",
+    "ASCII": "save the mesh as a binary STL or as OBJ",
+}
+"""What to do, by a word in the compiler's message."""
 
 
 def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
@@ -39,8 +45,7 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
         SceneError: the start names a keyframe that does not exist.
     """
     path = catalog.model_path(scene.vehicle, scene.folder)
-    spec = catalog.read_spec(path)
-    _free(spec, path)
+    spec = vehicle_spec(path)
     _leave_out_dry_land(spec, path, scene.water.level)
     bodies = len(spec.bodies)
     if scene.environment is not None:
@@ -52,14 +57,13 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
-    _leave_out_own_water(spec)
     if afloat and not skips_passive(spec.option.disableflags):
         # where the plugin cannot be, that was told on import
         with contextlib.suppress(EngineError):
             add_water(
                 spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms, hull=scene.hull, fill=scene.fill
             )
-    model = _compiled(spec, path)
+    model = compiled(spec, path)
     _load(model, scene, bodies)
     try:
         data = mujoco.MjData(model)
@@ -79,8 +83,40 @@ def vehicle_spec(path: Path) -> mujoco.MjSpec:
     """
     spec = catalog.read_spec(path)
     _free(spec, path)
+    _weigh(spec)
     _leave_out_own_water(spec)
     return spec
+
+
+def _weigh(spec: mujoco.MjSpec) -> None:
+    """Turn gravity on: without it nothing weighs, and nothing is lifted."""
+    off = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
+    if spec.option.disableflags & off or not np.any(spec.option.gravity):
+        gravity = "disables gravity" if spec.option.disableflags & off else "sets gravity to 0 0 0"
+        warnings.warn(f"the vehicle {gravity}; in water it weighs, by 0 0 -9.81", BuoyancyWarning, stacklevel=4)
+        spec.option.disableflags &= ~off
+        if not np.any(spec.option.gravity):
+            spec.option.gravity = [0.0, 0.0, -9.81]
+
+
+def compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
+    """A spec, compiled.
+
+    Raises:
+        ModelError: MuJoCo refuses it; its own message is kept, with a mend where there is one.
+        BuoyancyError: what the water in it refuses.
+    """
+    raised()
+    try:
+        return spec.compile()
+    except ValueError as error:
+        # what the water refuses comes through MuJoCo as a text
+        refused = raised()
+        if isinstance(refused, BuoyancyError):
+            raise refused from None
+        told = " ".join(str(error).split())
+        mend = next((f"; {mend}" for word, mend in _MENDS.items() if word in told), "")
+        raise ModelError(f"MuJoCo cannot compile '{path}': {told}{mend}") from error
 
 
 def _free(spec: mujoco.MjSpec, path: Path) -> None:
@@ -113,7 +149,7 @@ def _leave_out_dry_land(spec: mujoco.MjSpec, path: Path, level: float) -> None:
     if not planes:
         return
     # the compiler knows which way they face, however that was written
-    model = _compiled(spec.copy(), path)
+    model = compiled(spec.copy(), path)
     own = [g for g in range(model.ngeom) if model.geom_bodyid[g] == 0 and model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE]
     up, normal = np.array([0.0, 0.0, 1.0]), np.empty(3)
     for plane, g in zip(planes, own, strict=True):
@@ -138,18 +174,6 @@ def _leave_out_own_water(spec: mujoco.MjSpec) -> None:
     for plugin in own:
         warnings.warn(f"the water '{plugin.name}' of the model gives way to the scene's", BuoyancyWarning, stacklevel=4)
         spec.delete(plugin)
-
-
-def _compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
-    raised()
-    try:
-        return spec.compile()
-    except ValueError as error:
-        # what the water refuses comes through MuJoCo as a text
-        refused = raised()
-        if isinstance(refused, BuoyancyError):
-            raise refused from None
-        raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
 
 
 def _load(model: mujoco.MjModel, scene: Scene, bodies: int) -> None:

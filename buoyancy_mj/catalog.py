@@ -1,5 +1,6 @@
 """The scenes and models that ship, by name."""
 
+import os
 from pathlib import Path
 
 import mujoco
@@ -7,6 +8,8 @@ import mujoco
 from buoyancy_mj.errors import BuoyancyError, ModelError, SceneError, choices
 
 _PACKAGE = Path(__file__).resolve().parent
+_PACKAGES = ("package://", "model://")
+"""How URDF names the files of ROS packages, and of Gazebo's models."""
 
 
 def _shipped(kind: str) -> Path:
@@ -81,12 +84,30 @@ def _found(name: str, shipped: dict[str, Path], base: Path, kind: str, error: ty
 
 
 def read_spec(path: Path) -> mujoco.MjSpec:
-    """An MJCF or URDF file, not yet compiled.
+    """An MJCF or URDF file, not yet compiled; files of ROS packages are looked for.
 
     Raises:
-        ModelError: MuJoCo cannot read it; its own message is kept.
+        ModelError: MuJoCo cannot read it, its own message is kept; or a package is nowhere.
     """
     try:
-        return mujoco.MjSpec.from_file(str(path))
+        spec = mujoco.MjSpec.from_file(str(path))
     except Exception as error:
         raise ModelError(f"MuJoCo cannot read '{path}': {' '.join(str(error).split())}") from error
+    for asset in spec.meshes:
+        if asset.file.startswith(_PACKAGES):
+            asset.file = str(_in_package(asset.file, path))
+    return spec
+
+
+def _in_package(uri: str, path: Path) -> Path:
+    """The file of 'package://NAME/...', in a folder NAME above or beside what names it, or on ROS_PACKAGE_PATH."""
+    package, _, rest = uri.split("://", 1)[1].partition("/")
+    roots = [*path.resolve().parents, *map(Path, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep))]
+    for root in roots:
+        for folder in (root, root / package):
+            if folder.name == package and (folder / rest).is_file():
+                return folder / rest
+    raise ModelError(
+        f"'{path}' asks for '{uri}', and no folder '{package}' above it or on ROS_PACKAGE_PATH holds that file; put the "
+        "package there"
+    )

@@ -260,7 +260,7 @@ def _floating(vessel: Vessel, hulls: Sequence[Hull]) -> Floating:
             found, all_found = rest(vessel), stable_rests(vessel)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", BuoyancyWarning)
-                righting = curve(_at(vessel, found), np.radians(np.arange(181.0)))
+                righting = curve(vessel, np.radians(np.arange(181.0)), upright=_at(vessel, found).rotation)
             notes += [str(entry.message) for entry in caught]
         except BuoyancyError as error:
             notes.append(str(error))

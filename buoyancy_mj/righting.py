@@ -123,12 +123,13 @@ def curve(
     vessel: Vessel,
     heels: NDArray[np.float64],
     *,
+    upright: NDArray[np.float64] | None = None,
     axis: float = 0.0,
     free: bool = True,
     points: Sequence[str] | str = POINTS,
 ) -> RightingArm:
-    """The GZ curve of a vessel, upright as it is, see `righting_arm`."""
-    heeled = _Heeled(vessel, axis, free)
+    """The GZ curve of a vessel from where it is, or from `upright`, world_from_vessel (3, 3); see `righting_arm`."""
+    heeled = _Heeled(vessel, vessel.rotation if upright is None else upright, axis, free)
     # outwards from the least, so that each trim is found from the one before
     poses: dict[float, Afloat] = {}
     for side in (heels[heels >= 0.0], heels[heels < 0.0][::-1]):
@@ -161,11 +162,11 @@ def curve(
 class _Heeled:
     """A vessel brought to a heel, in axes whose x is the axis of heel."""
 
-    def __init__(self, vessel: Vessel, axis: float, free: bool) -> None:
+    def __init__(self, vessel: Vessel, upright: NDArray[np.float64], axis: float, free: bool) -> None:
         self.vessel, self.free = vessel, free
-        heading = attitude(vessel.rotation)[0] + axis
+        heading = attitude(upright)[0] + axis
         self.back = Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix()
-        self.upright = self.back.T @ vessel.rotation
+        self.upright = self.back.T @ upright
         self.across = self.back[:2, 1:2].copy()
 
     def __call__(self, heel: float, last: Afloat | None) -> Afloat:

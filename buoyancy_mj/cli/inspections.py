@@ -10,7 +10,7 @@ import typer
 
 from buoyancy_mj import ballast as ballasts
 from buoyancy_mj import catalog, report
-from buoyancy_mj.assembly import vehicle_spec
+from buoyancy_mj.assembly import compiled, vehicle_spec
 from buoyancy_mj.cli.common import FILL, GEOMS, HULL, app, err, out, quoted, rerun, told
 from buoyancy_mj.errors import ModelError, SceneError
 from buoyancy_mj.inspection import Inspection, inspected
@@ -44,9 +44,9 @@ def inspect_(
         raise SceneError(f"--record is '{record}'; a recording's name ends in .rrd")
     path = catalog.model_path(model)
     spec = vehicle_spec(path)
-    compiled = _compiled(spec, path)
+    whole = compiled(spec, path)
     with err.status("inspecting"):
-        found = inspected(compiled, _water(water), geoms=geoms, hull=hull, fill=fill, title=path.stem)
+        found = inspected(whole, _water(water), geoms=geoms, hull=hull, fill=fill, title=path.stem)
     if as_json:
         print(json.dumps(report.plain(found), indent=2, allow_nan=False))
     else:
@@ -59,7 +59,7 @@ def inspect_(
 
         err.print(f"open the recording: {rerun()} {quoted(recorded(found, record))}", highlight=False, soft_wrap=True)
     if repair is not None:
-        _repair(spec, compiled, found, repair)
+        _repair(spec, whole, found, repair)
     if any(part.taken and part.mesh is None for part in found.parts):
         raise typer.Exit(1)
 
@@ -89,7 +89,7 @@ def ballast_(
     path = catalog.model_path(model)
     spec = vehicle_spec(path)
     found = ballasts(
-        _compiled(spec, path), _water(water), draft=draft, reserve=reserve, heel=heel, trim=trim, bg=bg,
+        compiled(spec, path), _water(water), draft=draft, reserve=reserve, heel=heel, trim=trim, bg=bg,
         masses=[box[:3], box[3:]] if box is not None else masses or "ballast*", foam=foam or "foam*",
         geoms=geoms, hull=hull, fill=fill,
     )  # fmt: skip
@@ -115,13 +115,6 @@ def _water(words: list[str] | None) -> Water:
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"--water {' '.join(words or [])}: {error}; write KEY=VALUE, as in density=1025") from error
     return water_from_table(table, "--water")
-
-
-def _compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
-    try:
-        return spec.compile()
-    except ValueError as error:
-        raise ModelError(f"MuJoCo cannot compile '{path}': {' '.join(str(error).split())}") from error
 
 
 def _plotted(found: Inspection, folder: Path) -> Path:
