@@ -205,8 +205,6 @@ def _ballasted(vessel: Vessel, placed: Sequence[Placed]) -> Vessel:
     for one, point in zip(placed, points, strict=True):
         inertia = inertia + one.mass * _about(point - shift) + 0.4 * one.mass * one.radius**2 * np.eye(3)
     balls = [(one, point) for one, point in zip(placed, points, strict=True) if one.displaces]
-    meshes = [mesh.transformed(np.eye(3), -shift) for mesh in vessel.meshes]
-    meshes += [shapes.sphere(one.radius).transformed(np.eye(3), point - shift) for one, point in balls]
     return dataclasses.replace(
         vessel,
         mass=mass,
@@ -215,7 +213,9 @@ def _ballasted(vessel: Vessel, placed: Sequence[Placed]) -> Vessel:
         position=vessel.position + vessel.rotation @ shift,
         names=(*vessel.names, *(one.label for one, _ in balls)),
         bodies=(*vessel.bodies, *(vessel.root for _ in balls)),
-        meshes=tuple(meshes),
+        solids=(*vessel.solids, *(shapes.sphere(one.radius) for one, _ in balls)),
+        places=np.array([*vessel.places, *(point for _, point in balls)]) - shift,
+        turns=np.array([*vessel.turns, *(np.eye(3) for _ in balls)]),
         fills=np.append(vessel.fills, np.ones(len(balls))),
         sites={name: at - shift for name, at in vessel.sites.items()},
     )

@@ -3,6 +3,7 @@
 import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.errors import MethodError
 from buoyancy_mj.kernels import clip, waterplane
 from buoyancy_mj.mesh import TriMesh, refined
-from buoyancy_mj.tree import grown
+from buoyancy_mj.tree import Tree, grown
 from buoyancy_mj.water import Water
 
 MOST_TRIANGLES = 200_000
 """Size to which a mesh may be refined for the waves."""
+_TREES: WeakKeyDictionary[TriMesh, dict[float, Tree]] = WeakKeyDictionary()
 
 
 @dataclasses.dataclass(frozen=True)
@@ -91,7 +93,7 @@ class PackedHulls:
         self.volumes = self._whole[:, 0].copy()
         """What the whole meshes displace (h,) [m^3]."""
         edges = _longest_edges(meshes, np.asarray(bodies), water, tolerance)
-        trees = [grown(*refined(mesh.vertices, mesh.faces, edge)) for mesh, edge in zip(meshes, edges, strict=True)]
+        trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
         starts = np.cumsum([0, *(len(tree.vertices) for tree in trees)])
         firsts = np.cumsum([0, *(len(tree.faces) for tree in trees)])
         self._nodes = np.cumsum([0, *(len(tree.spans) for tree in trees)])
@@ -154,8 +156,10 @@ class PackedHulls:
         )
         return self.results
 
-    def waterplanes(self, positions: NDArray[np.float64], rotations: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Waterplanes of all hulls on the still level (h, 10), see `kernels.waterplane.waterplanes`."""
+    def waterplanes(
+        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], about: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Waterplanes of all hulls on the still level about a point (h, 10), see `kernels.waterplane.waterplanes`."""
         rows = np.empty((len(self._whole), waterplane.COLUMNS))
         waterplane.waterplanes(
             self._vertices,
@@ -167,11 +171,20 @@ class PackedHulls:
             self.frames,
             positions,
             rotations,
+            about,
             self.water.level,
             self._depths,
             rows,
         )
         return rows
+
+
+def _tree(mesh: TriMesh, edge: float) -> Tree:
+    """The tree of a mesh with edges no longer than `edge`; once for as long as the mesh lives."""
+    trees = _TREES.setdefault(mesh, {})
+    if edge not in trees:
+        trees[edge] = grown(*refined(mesh.vertices, mesh.faces, edge))
+    return trees[edge]
 
 
 def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> float:

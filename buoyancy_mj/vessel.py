@@ -54,23 +54,37 @@ class Vessel:
     """Names of the hulls (h)."""
     bodies: tuple[int, ...]
     """Bodies of the hulls (h)."""
-    meshes: tuple[TriMesh, ...]
-    """The hulls, in the vessel's axes."""
+    solids: tuple[TriMesh, ...]
+    """The hulls, each in a frame of its own."""
+    places: NDArray[np.float64]
+    """Origins of those frames in the vessel's axes (h, 3) [m]."""
+    turns: NDArray[np.float64]
+    """And their rotations, vessel_from_hull (h, 3, 3)."""
     fills: NDArray[np.float64]
     """Part of each hull's volume that displaces (h,)."""
     sites: dict[str, NDArray[np.float64]]
     """Named sites on it, each (3,) [m], in the vessel's axes."""
 
     @functools.cached_property
+    def meshes(self) -> tuple[TriMesh, ...]:
+        """The hulls, in the vessel's axes."""
+        return tuple(
+            solid.transformed(turn, place) for solid, turn, place in zip(self.solids, self.turns, self.places, strict=True)
+        )
+
+    @functools.cached_property
     def volume(self) -> float:
         """Volume of water displaced fully submerged [m^3]."""
-        return float(self.fills @ [mesh.volume for mesh in self.meshes])
+        return float(self.fills @ [solid.volume for solid in self.solids])
 
     @functools.cached_property
     def centroid(self) -> NDArray[np.float64]:
         """Centre of buoyancy fully submerged, in the vessel's axes (3,) [m]."""
-        shares = self.fills * [mesh.volume for mesh in self.meshes]
-        return shares @ [mesh.centroid for mesh in self.meshes] / self.volume
+        shares = self.fills * [solid.volume for solid in self.solids]
+        middles = [
+            turn @ solid.centroid + place for solid, turn, place in zip(self.solids, self.turns, self.places, strict=True)
+        ]
+        return shares @ middles / self.volume
 
     @functools.cached_property
     def radius(self) -> float:
@@ -95,7 +109,7 @@ class Vessel:
     def at(self, position: ArrayLike, rotation: ArrayLike) -> "Afloat":
         """The vessel with its centre of gravity at a place (3,) [m], turned by world_from_vessel (3, 3)."""
         origin, turn = np.asarray(position, float), np.ascontiguousarray(rotation, float)
-        places, turns = origin[None], turn.reshape(1, 9)
+        places, turns = origin + self.places @ turn.T, (turn @ self.turns).reshape(-1, 9)
         wet = self._packed.submerge(places, turns, 0.0)
         volumes = wet[:, clip.VOLUME]
         volume = float(volumes.sum())
@@ -103,7 +117,7 @@ class Vessel:
         if volume > 0.0:
             held = volumes > 0.0
             arm = volumes[held] @ (wet[held, clip.CENTROID] - origin) / volume
-        cut = self._packed.waterplanes(places, turns)
+        cut = self._packed.waterplanes(places, turns, origin)
         extents = np.concatenate([cut[:, 6:8].min(axis=0), cut[:, 8:10].max(axis=0)])
         return Afloat(
             self, origin, turn, volume, arm, float(wet[:, clip.WETTED_AREA].sum()), cut[:, :6].sum(axis=0), extents
@@ -128,8 +142,8 @@ class Vessel:
     @functools.cached_property
     def _packed(self) -> PackedHulls:
         level = Water(density=self.water.density, level=self.water.level)
-        rows = np.zeros(len(self.meshes), np.int64)
-        return PackedHulls(self.meshes, rows, rows, level, fills=self.fills)
+        rows = np.arange(len(self.solids))
+        return PackedHulls(self.solids, rows, rows, level, fills=self.fills)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -242,8 +256,6 @@ def vessel_with(
         axes = turn @ data.ximat[b].reshape(3, 3)
         inertia += axes * model.body_inertia[b] @ axes.T + m * (c @ c * np.eye(3) - np.outer(c, c))
     own = [one for one in hulls if model.body_rootid[one.body] == root]
-    places = [turn @ (data.geom_xpos[one.geom] - data.xpos[root]) - centre for one in own]
-    turns = [turn @ data.geom_xmat[one.geom].reshape(3, 3) for one in own]
     return Vessel(
         model=model,
         qpos=data.qpos.copy(),
@@ -257,7 +269,9 @@ def vessel_with(
         rotation=turn.T.copy(),
         names=tuple(one.name for one in own),
         bodies=tuple(one.body for one in own),
-        meshes=tuple(one.mesh.transformed(t, p) for one, t, p in zip(own, turns, places, strict=True)),
+        solids=tuple(one.mesh for one in own),
+        places=np.array([turn @ (data.geom_xpos[one.geom] - data.xpos[root]) - centre for one in own]),
+        turns=np.array([turn @ data.geom_xmat[one.geom].reshape(3, 3) for one in own]),
         fills=np.array([one.fill for one in own]),
         sites={
             str(model.site(i).name): turn @ (data.site_xpos[i] - data.xpos[root]) - centre

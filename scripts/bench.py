@@ -6,7 +6,8 @@ Medians over repeats: a submersion by the public call against trimesh's capped s
 hull of the wet vertices, manifold3d's trim and, where it is installed (pip install '.[bench]'),
 Capytaine's immersed_part, on the same meshes and poses; the tree of moments against the plain way;
 a step of a scene with water against the same step without; batches on one thread and on two; the
-real-time factor of `auv_waves`; the time from a fresh interpreter to the first step.
+real-time factor of `auv_waves`; the time from a fresh interpreter to the first step; hydrostatics
+against Capytaine's, rest poses, righting arms and whole inspections.
 """
 
 import argparse
@@ -30,9 +31,25 @@ from rich.table import Table
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, catalog, exact, read_scene, submerge, tree
+from buoyancy_mj import (
+    RegularWave,
+    Simulation,
+    TriMesh,
+    Water,
+    catalog,
+    equilibrium,
+    exact,
+    hydrostatics,
+    mended,
+    read_scene,
+    righting_arm,
+    submerge,
+    tree,
+)  # fmt: skip
 from buoyancy_mj.assembly import assembled
+from buoyancy_mj.balance import balanced
 from buoyancy_mj.recording import Recording
+from buoyancy_mj.vessel import vessel_of
 
 try:
     import capytaine
@@ -219,6 +236,68 @@ def first_step() -> float:
     return statistics.median(times)
 
 
+# statics --------------------------------------------------------------------------------------------
+
+
+def vehicles(folder: Path) -> dict[str, Path]:
+    """The AUV, a ball, and a hull of 100,000 triangles, as MJCF files."""
+    ball = trimesh.creation.icosphere(4, radius=0.5)
+    # a double-ended hull with a flat deck, some 100,000 triangles
+    u, v = np.meshgrid(np.linspace(-1.0, 1.0, 224), np.linspace(0.0, 1.0, 112), indexing="ij")
+    side = np.stack([u, 0.25 * (1.0 - u**2) * (1.0 - (1.0 - v) ** 2), 0.3 * v - 0.2], axis=-1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(223), np.arange(111), indexing="ij")
+    a = (i * 112 + j).ravel()
+    shell = np.vstack([np.column_stack([a, a + 113, a + 112]), np.column_stack([a, a + 1, a + 113])])
+    rim = 112 * np.arange(224) + 111
+    p, q, n = rim[:-1], rim[1:], len(side)
+    deck = np.vstack([np.column_stack([p, p + n, q]), np.column_stack([q, p + n, q + n])])
+    faces = np.vstack([shell, shell[:, ::-1] + n, deck])
+    hull, _ = mended(np.vstack([side, side * [1.0, -1.0, 1.0]]), faces)
+    paths = {"sauvc_auv": catalog.models()["sauvc_auv"]}
+    for name, mesh, mass in (
+        ("ball", ball, 250.0),
+        ("hull", trimesh.Trimesh(hull.vertices, hull.faces, process=False), 50.0),
+    ):
+        mesh.export(folder / f"{name}.obj")
+        paths[name] = folder / f"{name}.xml"
+        paths[name].write_text(
+            f'<mujoco><asset><mesh name="{name}" file="{name}.obj"/></asset><worldbody><body name="{name}"><freejoint/>'
+            f'<inertial pos="0 0 -.1" mass="{mass}" diaginertia="9 9 9"/><geom type="mesh" mesh="{name}"/></body>'
+            "</worldbody></mujoco>"
+        )
+    return paths
+
+
+def statics(path: Path, least: float) -> dict[str, float]:
+    """Times [s] of what is asked of a vehicle at rest, everything included, and of a whole `inspect`."""
+    model = catalog.read_spec(path).compile()
+    vessel = vessel_of(model)
+    times = {"triangles": float(sum(len(mesh.faces) for mesh in vessel.meshes))}
+    starts = [
+        [*model.qpos0[:3], *Rotation.from_euler("x", 0.1 + 0.1 * i).as_quat(scalar_first=True)] for i in range(len(TURNS))
+    ]
+    for name, call in (
+        ("hydrostatics", lambda i: hydrostatics(model, qpos=starts[i])),
+        ("equilibrium", lambda i: equilibrium(model, start=starts[i])),
+        ("once more from the same vessel", lambda i: balanced(vessel, TURNS[i])),
+        ("every equilibrium", lambda i: equilibrium(model, all=True)),
+        ("righting arm", lambda i: righting_arm(model)),
+    ):
+        times[name] = median_time(call, least, fewest=3)
+    started = time.perf_counter()
+    subprocess.run([sys.executable, "-m", "buoyancy_mj", "inspect", str(path)], check=True, capture_output=True)
+    times["inspect"] = time.perf_counter() - started
+    if capytaine is not None and times["triangles"] < 4 * LARGE:
+        parts = [mesh.transformed(vessel.rotation, vessel.position) for mesh in vessel.meshes]
+        ends = np.cumsum([0] + [len(part.vertices) for part in parts])
+        faces = np.vstack([part.faces + n for part, n in zip(parts, ends, strict=False)])
+        whole = capytaine.Mesh(vertices=np.vstack([part.vertices for part in parts]), faces=faces)
+        dofs = capytaine.rigid_body_dofs(rotation_center=vessel.position)
+        body = capytaine.FloatingBody(mesh=whole, dofs=dofs, center_of_mass=vessel.position, mass=vessel.mass)
+        times["Capytaine"] = median_time(lambda i: body.compute_hydrostatics(rho=1000.0, g=9.81), least, fewest=3)
+    return times
+
+
 # telling --------------------------------------------------------------------------------------------
 
 
@@ -271,7 +350,7 @@ def flat(results: dict, prefix: str = "") -> dict[str, float]:
 
 def main() -> None:
     """Measure, print, save, compare."""
-    sections = ("submersion", "tree", "step", "batch", "real_time", "first_step")
+    sections = ("submersion", "tree", "step", "batch", "real_time", "first_step", "statics")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer sizes and repeats")
     parser.add_argument("--only", nargs="+", choices=sections, default=sections, help="measure these alone")
@@ -323,6 +402,14 @@ def main() -> None:
     if "first_step" in options.only:
         results["first_step"] = first_step()
         console.print(f"from a fresh interpreter through the first step of auv_waves: {results['first_step']:.2f} s")
+    if "statics" in options.only:
+        with tempfile.TemporaryDirectory() as folder:
+            results["statics"] = {name: statics(path, least) for name, path in vehicles(Path(folder)).items()}
+        for name, row in results["statics"].items():
+            told = ", ".join(f"{what} {1e3 * row[what]:,.1f} ms" for what in row if what not in ("triangles", "Capytaine"))
+            console.print(f"{name}, {row['triangles']:,.0f} triangles: {told}")
+            if "Capytaine" in row:
+                console.print(f"    Capytaine's hydrostatics take {row['Capytaine'] / row['hydrostatics']:,.0f} x as long")
 
     if options.compare:
         before = flat(json.loads(options.compare.read_text()))

@@ -38,7 +38,8 @@ WAVES = Water(waves=[RegularWave(0.1, wavelength=8.0), RegularWave(0.05, wavelen
 def packed(mesh, water, monkeypatch, *, few, tolerance=2e-3):
     """A packed mesh, by a tree (few = 0) or by the plain way."""
     monkeypatch.setattr(tree, "FEW", few)
-    return exact.PackedHulls([mesh], [0], [0], water, tolerance)
+    # a mesh of its own, since trees stay with theirs
+    return exact.PackedHulls([TriMesh(mesh.vertices, mesh.faces)], [0], [0], water, tolerance)
 
 
 @pytest.fixture

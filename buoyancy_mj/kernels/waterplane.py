@@ -25,10 +25,11 @@ def waterplanes(
     frames,
     positions,
     rotations,
+    about,  # (3,) the point that all is about
     level,
     depths,  # scratch
-    out,  # (h, 10) integrals of 1, x, y, x x, x y, y y about the frame's origin, each times the part that displaces;
-    # and the lowest x, y and highest x, y of the waterline, from the same origin
+    out,  # (h, 10) integrals of 1, x, y, x x, x y, y y, each times the part that displaces; and the lowest x, y and
+    # highest x, y of the waterline
 ):
     """The waterplane of each hull on still water, seen from above, in the world's axes."""
     for h in range(frames.shape[0]):
@@ -37,7 +38,8 @@ def waterplanes(
         out[h, 6:8], out[h, 8:10] = math.inf, -math.inf
         still = level - origin[2]
         # about the middle of the hull, lest the moments cancel
-        mx, my, _ = placed((0.0, 0.0, 0.0), r, whole[h, 5], whole[h, 6], whole[h, 7])
+        corner = (origin[0] - about[0], origin[1] - about[1], 0.0)
+        mx, my, _ = placed(corner, r, whole[h, 5], whole[h, 6], whole[h, 7])
         a = ax = ay = axx = axy = ayy = 0.0
         i, end = nodes[h], nodes[h + 1]
         while i < end:
@@ -64,8 +66,8 @@ def waterplanes(
                     vertices[k, 0], vertices[k, 1], vertices[k, 2], w1, w1,
                     vertices[o, 0], vertices[o, 1], vertices[o, 2], w2, w2,
                 )  # fmt: skip
-                px, py, _ = placed((0.0, 0.0, 0.0), r, one[0], one[1], one[2])
-                qx, qy, _ = placed((0.0, 0.0, 0.0), r, other[0], other[1], other[2])
+                px, py, _ = placed(corner, r, one[0], one[1], one[2])
+                qx, qy, _ = placed(corner, r, other[0], other[1], other[2])
                 out[h, 6], out[h, 8] = min(out[h, 6], px, qx), max(out[h, 8], px, qx)
                 out[h, 7], out[h, 9] = min(out[h, 7], py, qy), max(out[h, 9], py, qy)
                 px, py, qx, qy = px - mx, py - my, qx - mx, qy - my
