@@ -50,14 +50,14 @@ def _blueprint(found: Inspection) -> rrb.Blueprint:
     look_at, size = np.zeros(3), 1.0
     for floating in found.floating[:1]:
         vessel = floating.at_rest
-        look_at, size = np.array([*vessel.position[:2], vessel.water.level]), 2.0 * vessel.radius
+        look_at, size = vessel.position, 2.0 * vessel.radius
     view = rrb.Spatial3DView(
         origin="world",
         name=found.title,
         background=rrb.Background(color=[24, 30, 40]),
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(
-            position=look_at + size * np.array([-0.5, -1.1, 0.4]), look_target=look_at, eye_up=[0, 0, 1]
+            position=look_at + size * np.array([-0.6, -1.3, 0.5]), look_target=look_at, eye_up=[0, 0, 1]
         ),
     )
     beside: list[Any] = [rrb.TextDocumentView(origin="report", name="report")]

@@ -16,7 +16,14 @@ README = (ROOT / "README.md").read_text()
 
 
 @pytest.mark.parametrize(
-    ("code", "told"), [*zip(re.findall(r"```python\n(.*?)```", README, re.DOTALL), ["m^3 under water", "] N"], strict=True)]
+    ("code", "told"),
+    [
+        *zip(
+            re.findall(r"```python\n(.*?)```", README, re.DOTALL),
+            ["m^3 under water", "] N", "kg make it neutral"],
+            strict=True,
+        )
+    ],
 )
 def test_the_lines_of_python_run(code, told, capsys):
     vehicle = catalog.models()["sauvc_auv"]
@@ -52,6 +59,15 @@ def test_the_command_lines_are_understood(line, tmp_path, monkeypatch):
     words = shlex.split(line, comments=True)
     words = [word.replace("path/to/my_vehicle.xml", str(vehicle)) for word in words if word != "--live"]
     result = CliRunner().invoke(app, [*words, "--duration", "0.05"])
+    assert result.exit_code == 0, result.output
+
+
+@pytest.mark.parametrize("line", re.findall(r"\.venv/bin/buoyancy-mj ((?:inspect|ballast) .*)", README))
+def test_the_inspections_are_understood(line, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = shlex.split(line, comments=True)
+    words = [word.replace("path/to/my_vehicle.xml", str(catalog.models()["sauvc_auv"])) for word in words]
+    result = CliRunner().invoke(app, words)
     assert result.exit_code == 0, result.output
 
 
