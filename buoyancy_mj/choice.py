@@ -57,10 +57,8 @@ def considered(
         collides = {g: bool(model.geom_contype[g] or model.geom_conaffinity[g]) for g in solid}
         bodies_that_collide = {model.geom_bodyid[g] for g in solid if collides[g]}
         chosen = {g: "collision geom" for g in solid if collides[g]}
-        chosen |= {
-            g: "visual geom of a body without collision geoms" for g in solid if _body(model, g) not in bodies_that_collide
-        }
-        left = "visual geom of a body that has collision geoms"
+        chosen |= {g: "visual; its body has no collision geoms" for g in solid if _body(model, g) not in bodies_that_collide}
+        left = "visual; its body has collision geoms"
     if not chosen:
         raise ModelError(
             "no geom of this model displaces water: it has no mesh, box, sphere, ellipsoid, capsule or cylinder "

@@ -47,6 +47,8 @@ class Part:
     """Part of its volume that displaces."""
     mesh: TriMesh | None
     """Its mesh in its own frame; None where it displaces nothing, or was refused."""
+    centroid: NDArray[np.float64] | None
+    """Of its volume, in the frame of its body (3,) [m]; None without a mesh."""
     diagnosis: Diagnosis | None
     """What is wrong with its mesh; None of other geoms and convex hulls."""
     notes: tuple[str, ...]
@@ -202,6 +204,11 @@ def _part(model: mujoco.MjModel, verdict: Considered, convex: bool, fills: dict[
                 problems.append(str(error))
         if found is not None and mesh is not None:
             notes = _walls(mesh)
+    centroid = None
+    if mesh is not None:
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
+        centroid = turn.reshape(3, 3) @ mesh.centroid + model.geom_pos[geom]
     return Part(
         name=geom_name(model, geom),
         body=body_name(model, int(model.geom_bodyid[geom])),
@@ -211,6 +218,7 @@ def _part(model: mujoco.MjModel, verdict: Considered, convex: bool, fills: dict[
         convex=convex,
         fill=fills.get(geom, 1.0),
         mesh=mesh,
+        centroid=centroid,
         diagnosis=found,
         notes=tuple(notes),
     )

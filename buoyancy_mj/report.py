@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from rich.box import SIMPLE_HEAD
 from rich.console import Group
 from rich.table import Table
 from rich.text import Text
@@ -52,9 +53,18 @@ def renderable(found: Inspection) -> Group:
     parts: list[Any] = []
     for section in sections(found):
         if section.rows:
-            table = Table(title=section.title, title_justify="left", show_header=bool(section.header))
+            table = Table(
+                title=section.title,
+                title_justify="left",
+                show_header=bool(section.header),
+                box=SIMPLE_HEAD,
+                pad_edge=False,
+                padding=(0, 1, 0, 0),
+            )
             for i, name in enumerate(section.header or ("",) * len(section.rows[0])):
-                table.add_column(name, justify="right" if _numeric(section.rows, i) else "left", overflow="fold")
+                table.add_column(
+                    name, justify="right" if _numeric(section.rows, i) else "left", no_wrap=i == 0, overflow="fold"
+                )
             for row in section.rows:
                 table.add_row(*row)
             parts.append(table)
@@ -98,52 +108,49 @@ def _what_displaces(found: Inspection) -> Section:
     rows = []
     for part in found.parts:
         shape = "convex hull" if part.convex else part.kind
-        filled = f"{part.fill:.0%} of it" if part.fill < 1.0 else ""
         verdict = "yes" if part.mesh is not None else "refused" if part.taken else "no"
-        size = (_number(1e3 * part.mesh.volume), _number(part.mesh.area)) if part.mesh is not None else ("", "")
-        rows.append((part.body, part.name, shape, verdict, part.reason, *size, filled))
-    header = ("body", "geom", "shape", "displaces", "why", "volume [l]", "area [m^2]", "flooded")
-    count = len(header) if any(row[-1] for row in rows) else len(header) - 1
-    return Section(f"{found.title}: what displaces water", header[:count], tuple(row[:count] for row in rows))
+        size = ("", "", "")
+        if part.mesh is not None and part.centroid is not None:
+            size = (_number(1e3 * part.mesh.volume), _number(part.mesh.area), _point(part.centroid))
+        flooded = f"{part.fill:.0%} of it" if part.fill < 1.0 else ""
+        rows.append((part.name, part.body, shape, f"{verdict}: {part.reason}", *size, flooded))
+    header = ("geom", "body", "shape", "displaces", "volume [l]", "area [m^2]", "centroid [m]", "displacing")
+    # what is alike in all rows tells nothing
+    kept = [i for i in range(len(header)) if i not in (1, 7) or len({row[i] for row in rows}) > 1]
+    cells = tuple(tuple(row[i] for i in kept) for row in rows)
+    return Section(f"{found.title}: what displaces water", tuple(header[i] for i in kept), cells)
 
 
 def _meshes(meshes: Sequence[tuple[Part, Diagnosis]]) -> Section:
-    rows, notes = [], []
-    told: set[str] = set()
+    alike: dict[tuple[str, ...], list[str]] = {}
     for part, mesh in meshes:
-        rows.append(
-            (
-                part.name, f"{mesh.triangles:,}", _watertight(mesh),
-                _amount(mesh.backwards, "wound backwards", f"{mesh.inverted} inside out" if mesh.inverted else ""),
-                _amount(mesh.degenerate, "degenerate", _amount(mesh.duplicates, "doubled", "")), _crossing(mesh),
-                _amount(mesh.shells, "inner", f"{mesh.pieces}"), "x".join(_number(side) for side in mesh.extents),
-            )
-        )  # fmt: skip
-        new = [text for text in (*mesh.notices, *(f"{part.name}: {note}" for note in part.notes)) if text not in told]
-        told |= set(new)
-        notes += new
-    header = ("geom", "triangles", "watertight", "orientation", "faces", "crosses itself", "pieces", "size [m]")
-    return Section("Meshes", header, tuple(rows), tuple(notes))
+        size = " x ".join(_number(side) for side in mesh.extents)
+        alike.setdefault((f"{mesh.triangles:,}", str(mesh.pieces), size, _state(mesh)), []).append(part.name)
+    rows = tuple((names[0] + (f" and {len(names) - 1} more" if names[1:] else ""), *cells) for cells, names in alike.items())
+    notes = [text for part, mesh in meshes for text in (*mesh.notices, *(f"{part.name}: {note}" for note in part.notes))]
+    return Section("Meshes", ("geom", "triangles", "pieces", "size [m]", "state"), rows, tuple(dict.fromkeys(notes)))
 
 
-def _watertight(mesh: Diagnosis) -> str:
-    if not mesh.holes:
-        return "yes" if mesh.mesh is not None or mesh.pieces else "?"
-    longest = max(hole.length for hole in mesh.holes)
-    return f"{len(mesh.holes)} holes, to {_number(longest)} m round, {_number(1e3 * mesh.doubt)} l in doubt"
-
-
-def _crossing(mesh: Diagnosis) -> str:
-    if mesh.joined:
-        return f"joined, {_number(1e3 * mesh.joined)} l less"
-    wrong = mesh.doubled + mesh.inside_out
-    return f"{_number(1e3 * wrong)} l" if wrong else "no"
-
-
-def _amount(count: int, what: str, other: str) -> str:
-    """What was found of two things; 'ok' for nothing."""
-    words = [f"{count} {what}"] if count else []
-    return ", ".join([*words, *([other] if other and other != "ok" else [])]) or "ok"
+def _state(mesh: Diagnosis) -> str:
+    """What was found of a mesh, in a few words."""
+    words = ["watertight" if mesh.pieces and not mesh.holes else "open"]
+    if mesh.holes:
+        longest = max(hole.length for hole in mesh.holes)
+        words = [f"{len(mesh.holes)} holes, to {_number(longest)} m round, {_number(1e3 * mesh.doubt)} l in doubt"]
+    crossing = 1e3 * (mesh.doubled + mesh.inside_out)
+    for count, what in (
+        (mesh.backwards, f"{mesh.backwards} wound backwards"),
+        (mesh.inverted, f"{mesh.inverted} inside out"),
+        (mesh.degenerate, f"{mesh.degenerate} degenerate"),
+        (mesh.duplicates, f"{mesh.duplicates} doubled"),
+        (mesh.shells, f"{mesh.shells} inner shells"),
+        (mesh.joined, f"pieces joined, {_number(1e3 * mesh.joined)} l less"),
+        (crossing, f"crosses itself, {_number(crossing)} l"),
+        (mesh.refusal, "refused"),
+    ):
+        if count:
+            words.append(what)
+    return ", ".join(words)
 
 
 def _floats(floating: Floating) -> list[Section]:
@@ -179,9 +186,9 @@ def _at_rest(found: Equilibrium) -> Section:
         ("waterplane area", _number(at.waterplane_area), "m^2"),
         ("waterline length, beam", f"{_number(at.waterline_length)}, {_number(at.waterline_beam)}", "m"),
         ("KB, KG, BG", f"{_number(at.KB)}, {_number(at.KG)}, {_number(at.BG)}", "m"),
-        ("BM transverse, longitudinal", f"{_number(at.BMt)}, {_number(at.BMl)}", "m"),
-        ("GM transverse, longitudinal", f"{_number(at.GMt)}, {_number(at.GMl)}", "m"),
-        ("periods of heave, roll, pitch", ", ".join(map(_number, (heave, roll, pitch))), "s, without added mass"),
+        ("BM across, along", f"{_number(at.BMt)}, {_number(at.BMl)}", "m"),
+        ("GM across, along", f"{_number(at.GMt)}, {_number(at.GMl)}", "m"),
+        ("periods of heave, roll, pitch", ", ".join(map(_number, (heave, roll, pitch))), "s, no added mass"),
         ("stiffness of heave", _number(float(at.stiffness[2, 2])), "N/m"),
         ("stiffness of roll, pitch", f"{_number(float(at.stiffness[3, 3]))}, {_number(float(at.stiffness[4, 4]))}", "N m"),
         ("stability", found.stability, "eigenvalues " + ", ".join(map(_number, found.eigenvalues)) + " 1/s^2"),
@@ -198,7 +205,7 @@ def _rests(rests: Sequence[Equilibrium]) -> Section:
         )
         for one in rests
     )  # fmt: skip
-    header = ("heel [deg]", "trim [deg]", "draft [m]", "GM [m]", "stability", "energy over the lowest [J]")
+    header = ("heel [deg]", "trim [deg]", "draft [m]", "GM [m]", "stability", "energy [J]")
     return Section("Every pose in which it rests", header, rows)
 
 
@@ -305,8 +312,8 @@ def _angle(value: float) -> str:
 
 
 def _point(values: NDArray[np.float64]) -> str:
-    # what is below a micrometre is rounding
-    return "(" + ", ".join(f"{value:.4g}" for value in np.round(values, 6) + 0.0) + ")"
+    # what is below a hundredth of a millimetre nobody builds
+    return "(" + ", ".join(f"{value:.4g}" for value in np.round(values, 5) + 0.0) + ")"
 
 
 def _degrees(angle: float, digits: int = 1) -> str:

@@ -214,7 +214,7 @@ def test_what_does_not_displace_says_why():
         "floor": "a plane bounds no volume",
         "rock": "its body cannot move",
         "hull": "collision geom",
-        "paint": "visual geom of a body that has collision geoms",
+        "paint": "visual; its body has collision geoms",
     }
     assert {p.name: p.taken for p in inspected(model, geoms="paint").parts}["hull"] is False
 
@@ -259,7 +259,7 @@ def test_the_report_is_markdown_and_json():
     text = markdown(found, [("Righting arm", "gz.png")])
     assert text.startswith("# raft\n")
     assert "floats: 600 kg reserve, draft 0.3 m, stable, GM 0.128 m" in text
-    assert "| GM transverse, longitudinal | 0.1278, 0.9611 | m |" in text
+    assert "| GM across, along | 0.1278, 0.9611 | m |" in text
     assert "![Righting arm](gz.png)" in text
     values = json.loads(json.dumps(plain(found), allow_nan=False))
     (floating,) = values["floating"]
@@ -267,6 +267,13 @@ def test_the_report_is_markdown_and_json():
     assert floating["rest"]["hydrostatics"]["natural_periods"][0] == pytest.approx(1.0988, abs=1e-4)
     assert len(floating["righting"]["gz"]) == 181
     assert values["geoms"][0]["volume"] == pytest.approx(1.2)
+    assert values["geoms"][0]["centroid"] == pytest.approx([0.0, 0.0, 0.0])
+
+
+def test_centroids_are_in_the_frame_of_the_body():
+    model = vessels.of_mesh(vessels.dented(4).transformed(np.eye(3), (1.0, 2.0, 3.0)), 400.0)
+    (part,) = inspected(model).parts
+    assert part.centroid == pytest.approx(vessels.dented(4).centroid + [1.0, 2.0, 3.0], abs=1e-6)
 
 
 # the command line
