@@ -61,7 +61,14 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
         # where the plugin cannot be, that was told on import
         with contextlib.suppress(EngineError):
             add_water(
-                spec, scene.water, method=scene.method, drag=scene.drag, geoms=scene.geoms, hull=scene.hull, fill=scene.fill
+                spec,
+                scene.water,
+                method=scene.method,
+                pressure=scene.pressure,
+                drag=scene.drag,
+                geoms=scene.geoms,
+                hull=scene.hull,
+                fill=scene.fill,
             )
     model = compiled(spec, path)
     _load(model, scene, bodies)

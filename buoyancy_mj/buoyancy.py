@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from buoyancy_mj import callbacks
 from buoyancy_mj.drag import Drag, estimated
-from buoyancy_mj.errors import EngineError, ModelError
+from buoyancy_mj.errors import EngineError, MethodError, ModelError, choices
+from buoyancy_mj.exact import Exact, PackedHulls
 from buoyancy_mj.geoms import displacing_hulls
 from buoyancy_mj.kernels import clip, wrenches
+from buoyancy_mj.kernels.native import Pressure
 from buoyancy_mj.loads import Loads, Portion
 from buoyancy_mj.methods import Method, method_of
-from buoyancy_mj.native import Native, Record
+from buoyancy_mj.native import CAUSES, Native, Record
 from buoyancy_mj.water import Water
 
 
@@ -38,6 +40,9 @@ class Buoyancy:
         hull: which of them as their convex hull, likewise.
         fill: and which flood, and displace in part, likewise.
         bodies: indices of the bodies whose geoms may; None for all.
+        pressure: what the pressure in waves is taken for: "archimedes" for rho g V upward, as in the
+            source paper; "hydrostatic" for that of the depth under the surface, which pushes along the
+            slope too; "froude-krylov" for that of linear waves, which fades with depth. See `kernels.waves.head`.
         drag: how damping is estimated; None for none.
         method: how the submersion is found: "exact", or the source paper's "convex_hull" and
             "sections", or one of `Exact`, `ConvexHull`, `Sections` with options.
@@ -46,7 +51,7 @@ class Buoyancy:
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips an
             `mjcb_control`), sleep enabled, no geom that displaces water, a body without mass.
         MeshError: a mesh that bounds no volume.
-        MethodError: there is no such method.
+        MethodError: there is no such method or pressure, or that method knows no pressure.
     """
 
     def __init__(
@@ -58,6 +63,7 @@ class Buoyancy:
         hull: str | Sequence[str] | None = None,
         fill: str | Sequence[str] | None = None,
         bodies: Sequence[int] | None = None,
+        pressure: str = "archimedes",
         drag: Drag | None = Drag(),
         method: str | Method = "exact",
     ) -> None:
@@ -65,6 +71,7 @@ class Buoyancy:
         self.water = water or Water()
         self.drag = drag
         self.method = method_of(method)
+        self.pressure = pressure_of(pressure, self.method)
         callbacks.refuse_actuation(model)
         _refuse_sleep(model)
         _ = self.gravity
@@ -88,7 +95,8 @@ class Buoyancy:
         self.floating = np.array([body for body in range(model.nbody) if model.body_rootid[body] in roots])
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
         self._rows, self._current = self.water.rows, np.array(self.water.current)
-        self.causes = ("buoyancy", "drag") if drag else ("buoyancy",)
+        acting = {"wave_pressure": self.pressure != Pressure.archimedes, "drag": drag is not None}
+        self.causes = tuple(cause for cause in CAUSES if acting.get(cause, True))
         """Names of the loads that act."""
         # what a step writes to; threads that share this object take turns
         self._looked, self._record = self.record(), self.record()
@@ -184,10 +192,17 @@ class Buoyancy:
         """What a record holds, as copies; its `data` still hold the poses."""
         wet, centres, rows = record.results.copy(), record.centres.copy(), record.total.copy()
         xipos = data.xipos
-        force = np.zeros((len(self.hulls), 3))
-        force[:, 2] = self.water.density * self.gravity * wet[:, clip.VOLUME]
-        arm = np.where(force[:, 2:] > 0.0, wet[:, clip.CENTROID] - xipos[self._owners], 0.0)
-        hull = Portion(wet[:, clip.VOLUME], wet[:, clip.CENTROID], force, np.cross(arm, force))
+        weight = self.water.density * self.gravity
+        if self._presses:
+            force, about = weight * record.heads[:, :3], weight * record.heads[:, 3:]
+            origins = data.geom_xpos[[hull.geom for hull in self.hulls]]
+            torque = about + np.cross(origins - xipos[self._owners], force)
+        else:
+            force = np.zeros((len(self.hulls), 3))
+            force[:, 2] = weight * wet[:, clip.VOLUME]
+            arm = np.where(force[:, 2:] > 0.0, wet[:, clip.CENTROID] - xipos[self._owners], 0.0)
+            torque = np.cross(arm, force)
+        hull = Portion(wet[:, clip.VOLUME], wet[:, clip.CENTROID], force, torque)
         body = Portion(centres[:, 0], centres[:, 1:], rows[:, :3], rows[:, 3:])
         everything = np.empty((1, 4))
         wrenches.merge(wet, np.zeros(len(wet), np.int64), everything)
@@ -214,7 +229,9 @@ class Buoyancy:
         Raises:
             EngineError: this MuJoCo is not as expected inside.
         """
-        return Native(self.model, self.water, self.packed, self._owners, self._damping, self.causes, self._lock)
+        return Native(
+            self.model, self.water, self.packed, self._owners, self._damping, self.causes, self.pressure, self._lock
+        )
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the floating bodies, world frame."""
@@ -231,6 +248,22 @@ class Buoyancy:
         buoyancy[:] = 0.0
         wrenches.add_buoyancy(record.results, self._owners, self.water.density * self.gravity, data.xipos, buoyancy)
         record.total[:] = buoyancy
+        if self._presses:
+            assert isinstance(self.packed, PackedHulls)
+            pushed, dynamic = record.causes["wave_pressure"], self.pressure == Pressure.froude_krylov
+            pushed[:] = 0.0
+            record.heads[:] = self.packed.press(data.geom_xpos, data.geom_xmat, data.time, dynamic=dynamic)
+            wrenches.add_wave_pressure(
+                record.heads,
+                record.results,
+                self._owners,
+                self.packed.frames,
+                data.geom_xpos,
+                self.water.density * self.gravity,
+                data.xipos,
+                pushed,
+            )
+            record.total += pushed
         if self._damping is not None:
             drag, damping = record.causes["drag"], self._damping
             drag[:] = 0.0
@@ -260,6 +293,11 @@ class Buoyancy:
             record.total += drag
 
     @property
+    def _presses(self) -> bool:
+        """Whether the pressure is another than Archimedes': on still water it is not."""
+        return self.pressure != Pressure.archimedes and len(self._rows) > 0
+
+    @property
     def gravity(self) -> float:
         """Downward acceleration [m/s^2] of the model; 0 where its flags disable gravity.
 
@@ -272,6 +310,20 @@ class Buoyancy:
         if x != 0.0 or y != 0.0 or z > 0.0:
             raise ModelError(f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: set <option gravity='0 0 -9.81'/>")
         return -float(z)
+
+
+def pressure_of(name: str, method: Method) -> Pressure:
+    """The kind of pressure of a name.
+
+    Raises:
+        MethodError: there is none, or the method knows no pressure.
+    """
+    kinds = {kind.name.replace("_", "-"): kind for kind in Pressure}
+    if name not in kinds:
+        raise MethodError(f"pressure is '{name}'; {choices(name, kinds)}")
+    if kinds[name] != Pressure.archimedes and not isinstance(method, Exact):
+        raise MethodError(f"pressure '{name}' needs the method 'exact', not '{method.name}', which knows volumes alone")
+    return kinds[name]
 
 
 def _refuse_sleep(model: mujoco.MjModel) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MethodError
-from buoyancy_mj.kernels import clip, waterplane
+from buoyancy_mj.kernels import clip, pressure, waterplane
 from buoyancy_mj.mesh import TriMesh, refined
 from buoyancy_mj.tree import Tree, grown
 from buoyancy_mj.water import Water
@@ -155,6 +155,32 @@ class PackedHulls:
             self.results,
         )
         return self.results
+
+    def press(
+        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, *, dynamic: bool
+    ) -> NDArray[np.float64]:
+        """Pressure on all hulls (h, 6), see `kernels.pressure.press_hulls`."""
+        rows = np.empty((len(self._whole), 6))
+        pressure.press_hulls(
+            self._vertices,
+            self._faces,
+            self._areas,
+            self._nodes,
+            self._spans,
+            self._boxes,
+            self._moments,
+            self._whole,
+            self.frames,
+            positions,
+            rotations,
+            self.water.level,
+            self._waves,
+            time,
+            dynamic,
+            self._depths,
+            rows,
+        )
+        return rows
 
     def waterplanes(
         self, positions: NDArray[np.float64], rotations: NDArray[np.float64], about: NDArray[np.float64]

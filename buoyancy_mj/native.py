@@ -39,6 +39,10 @@ _SIGNATURES = {
 """Functions that C calls, with what is bound to them last."""
 
 
+CAUSES = ("buoyancy", "wave_pressure", "drag")
+"""Names of all loads that there are."""
+
+
 class Table:
     """Arrays, by name, where compiled code finds them: three words for each, its address, rows and columns."""
 
@@ -55,15 +59,17 @@ class Record(Table):
 
     def __init__(self, hulls: int, bodies: int, causes: Sequence[str]) -> None:
         """For a number of hulls and of bodies of the model, and the names of the loads that act."""
-        rows = {"buoyancy": np.zeros((bodies, 6))} | {"drag": np.zeros((bodies if "drag" in causes else 0, 6))}
+        rows = {cause: np.zeros((bodies if cause in causes else 0, 6)) for cause in CAUSES}
         self.results, self.centres = np.zeros((hulls, clip.COLUMNS)), np.zeros((bodies, 4))
+        self.heads = np.zeros((hulls, 6))
+        """Pressure on the hulls, see `kernels.pressure`; zeros where it is not asked for."""
         self.causes = {cause: rows[cause] for cause in causes}
         self.total = np.zeros((bodies, 6))
         self.instant = np.zeros(1)
         """Time [s] of it."""
         self.ids = np.zeros(len(kernel.Id), np.int64)
         """See `kernels.native.Id`."""
-        plain = {"results": self.results, "centres": self.centres, "total": self.total}
+        plain = {"results": self.results, "centres": self.centres, "heads": self.heads, "total": self.total}
         super().__init__(kernel.Record, rows | plain | {"instant": self.instant, "ids": self.ids})
 
 
@@ -85,6 +91,7 @@ class Native:
         owners: NDArray[np.int64],
         damping: Damping | None,
         causes: Sequence[str],
+        pressure: kernel.Pressure,
         lock: threading.RLock,
     ) -> None:
         """Gather it.
@@ -96,6 +103,7 @@ class Native:
             owners: the body of each (h,).
             damping: the drag of the bodies.
             causes: names of the loads that act.
+            pressure: what the pressure in waves is taken for.
             lock: held while hulls are submerged by Python code.
 
         Raises:
@@ -130,7 +138,7 @@ class Native:
                 "quadratic": drag.quadratic,
                 "members": drag.members,
                 "member_starts": drag.member_starts,
-                "sea": np.array([water.density, water.level]),
+                "sea": np.array([water.density, water.level, float(pressure)]),
                 "current": np.array(water.current, float),
                 "offsets": np.array([layout.offset(path) for path in kernel.OFFSETS]),
                 "pool": np.array([scratch.address for scratch in self._scratch]),

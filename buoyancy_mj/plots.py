@@ -15,7 +15,12 @@ TIMELINE = "sim_time"
 Colour = tuple[int, int, int]
 Line = tuple[str, ...]
 """Name of a line: its plot first, what the legend shows last."""
-COLOURS: Mapping[str, Colour] = {"weight": (235, 200, 40), "buoyancy": (60, 160, 255), "drag": (240, 90, 60)}
+COLOURS: Mapping[str, Colour] = {
+    "weight": (235, 200, 40),
+    "buoyancy": (60, 160, 255),
+    "wave_pressure": (80, 200, 190),
+    "drag": (240, 90, 60),
+}
 """Of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
 PLOTS = {

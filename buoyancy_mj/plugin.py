@@ -56,6 +56,7 @@ def add_water(
     water: Water | None = None,
     *,
     method: str | Method = "exact",
+    pressure: str = "archimedes",
     drag: Drag | None = Drag(),
     geoms: str | Sequence[str] | None = None,
     hull: str | Sequence[str] | None = None,
@@ -68,6 +69,7 @@ def add_water(
         spec: the model; all its bodies that move are in the water, but those that joined another instance.
         water: fresh and still at z = 0 if None.
         method: how the submersion is found, see `Buoyancy`.
+        pressure: what the pressure in waves is taken for, likewise.
         drag: how damping is estimated; None for none.
         geoms: which geoms displace water, see `Buoyancy`.
         hull: which of them as their convex hull, likewise.
@@ -86,7 +88,7 @@ def add_water(
         name: None if words is None else (words,) if isinstance(words, str) else tuple(words)
         for name, words in (("geoms", geoms), ("hull", hull), ("fill", fill))
     }
-    settings = Settings(water=water or Water(), method=method_of(method), drag=drag, **chosen)
+    settings = Settings(water=water or Water(), method=method_of(method), pressure=pressure, drag=drag, **chosen)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
     plugin.config = texts_from_settings(settings)
@@ -176,6 +178,7 @@ def _made(model: mujoco.MjModel, instance: int) -> Buoyancy:
         hull=settings.hull,
         fill=settings.fill,
         bodies=_joined(model, instance),
+        pressure=settings.pressure,
         drag=settings.drag,
         method=settings.method,
     )

@@ -94,6 +94,8 @@ class Scene:
     """The sea."""
     start: Start = Start()
     """Pose and velocity at time 0."""
+    pressure: str = "archimedes"
+    """What the pressure in waves is taken for, see `Buoyancy`: archimedes, hydrostatic, froude-krylov."""
     drag: Drag | None = Drag()
     """How damping is estimated; None for none."""
     method: Method = Exact()

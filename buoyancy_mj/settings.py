@@ -17,7 +17,7 @@ from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
 
 WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
 """Kinds of waves."""
-KEYS = ("density", "level", "waves", "current", "method", "drag", "geoms", "hull", "fill")
+KEYS = ("density", "level", "waves", "current", "method", "pressure", "drag", "geoms", "hull", "fill")
 """What texts describe: the fields of `Water`, and the arguments of `Buoyancy`."""
 _CHOICES = KEYS[-3:]
 """Words about geoms."""
@@ -31,6 +31,8 @@ class Settings:
     """The sea."""
     method: Method = Exact()
     """How the submersion is found."""
+    pressure: str = "archimedes"
+    """What the pressure in waves is taken for."""
     drag: Drag | None = Drag()
     """How damping is estimated; None for none."""
     geoms: tuple[str, ...] | None = None
@@ -112,6 +114,7 @@ def settings_from_texts(texts: Mapping[str, str], where: str) -> Settings:
     return Settings(
         water=water_from_table(sea, where),
         method=method_from_table(_words(given.get("method", "exact"), f"{where}: method"), f"{where}: method"),
+        pressure=given.get("pressure", "archimedes"),
         drag=drag_from_table(_words(drag, f"{where}: drag") if "=" in drag else plain_value(drag), f"{where}: drag"),
         **{key: tuple(given[key].replace(",", " ").split()) for key in _CHOICES if key in given},
     )
@@ -132,6 +135,7 @@ def texts_from_settings(settings: Settings) -> dict[str, str]:
     if type(method) not in METHODS.values():
         raise MethodError(f"{method!r} cannot be written into a model; possible are {', '.join(METHODS)}")
     texts["method"] = " ".join([method.name, *_fields(method)])
+    texts["pressure"] = settings.pressure
     texts["drag"] = " ".join(_fields(settings.drag, all_of_them=True)) if settings.drag else "false"
     texts |= {key: " ".join(getattr(settings, key) or ()) for key in _CHOICES}
     return {key: text for key, text in texts.items() if text}

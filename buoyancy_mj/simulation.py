@@ -49,6 +49,7 @@ class Simulation:
                 geoms=scene.geoms,
                 hull=scene.hull,
                 fill=scene.fill,
+                pressure=scene.pressure,
                 drag=scene.drag,
                 method=scene.method,
             )

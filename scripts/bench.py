@@ -170,9 +170,9 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
 # steps, batches, runs -------------------------------------------------------------------------------
 
 
-def scene_steps(name: str) -> dict[str, float]:
+def scene_steps(name: str, *settings: str) -> dict[str, float]:
     """Mean time of one step [s] over the whole of a scene, with its water (compiled) and without."""
-    scene = read_scene(catalog.scenes()[name])
+    scene = read_scene(catalog.scenes()[name], settings)
     times = {}
     for label, afloat in (("with", True), ("without", False)):
         best = np.inf
@@ -381,6 +381,8 @@ def main() -> None:
         results["tree"] = {f"{row['triangles']:.0f}": row for row in trees}
     if "step" in options.only:
         results["step"] = {name: scene_steps(name) for name in ("auv_drop_still", "auv_pool", "auv_waves")}
+        for kind in ("hydrostatic", "froude-krylov"):
+            results["step"][f"auv_waves, {kind}"] = scene_steps("auv_waves", f'pressure="{kind}"')
         for name, step in results["step"].items():
             console.print(
                 f"mean step of {name}: {step['with'] * 1e6:.1f} us with water, {step['without'] * 1e6:.1f} us without, "

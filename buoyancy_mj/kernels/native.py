@@ -10,7 +10,7 @@ from enum import IntEnum
 import numpy as np
 from numba import carray, njit
 
-from buoyancy_mj.kernels import clip, wrenches
+from buoyancy_mj.kernels import clip, pressure, wrenches
 from buoyancy_mj.kernels.memory import (
     call,
     corners,
@@ -33,10 +33,12 @@ Water = IntEnum(
     "owners bodies damped volumes linear quadratic members member_starts sea current offsets pool links",
     start=0,
 )
-"""Arrays of a water; 'sea' is density and level, 'owners' the body of each hull, 'damped' the bodies with drag."""
+"""Arrays of a water; 'sea' is density, level and `Pressure`, 'owners' the body of each hull, 'damped' those with drag."""
+Pressure = IntEnum("Pressure", "archimedes hydrostatic froude_krylov", start=0)
+"""What the water's pressure in waves is taken for."""
 Link = IntEnum("Link", "model signature act submerge error gravity_text", start=0)
 """Words of 'links': the own model and its signature; C functions, 0 for none; a text for the engine's error function."""
-Record = IntEnum("Record", "results centres buoyancy drag total instant ids", start=0)
+Record = IntEnum("Record", "results centres heads buoyancy wave_pressure drag total instant ids", start=0)
 """Arrays of what an evaluation leaves."""
 Id = IntEnum("Id", "alive model data water sizes", start=0)
 """Words of 'ids': whether it is in use; addresses of what it is of; and a sum over the sizes of the model's geoms."""
@@ -121,6 +123,36 @@ def _evaluate(model, data, water, scratch, record):
     buoyancy[:, :] = 0.0
     wrenches.add_buoyancy(wet, owners, sea[0] * strength, xipos, buoyancy)
     total[:, :] = buoyancy
+    kind = int(sea[2])
+    if kind != Pressure.archimedes and waves.shape[0] > 0:
+        heads, pushed = grid(record, Record.heads), grid(record, Record.wave_pressure)
+        geom_xpos = doubles(word(data + offsets[Offset.geom_xpos]), ngeom, 3)
+        pressure.press_hulls(
+            grid(water, Water.vertices),
+            corners(water, Water.faces),
+            grid(water, Water.areas),
+            words(water, Water.nodes),
+            spans(water, Water.spans),
+            grid(water, Water.boxes),
+            grid(water, Water.moments),
+            grid(water, Water.whole),
+            words(water, Water.frames),
+            geom_xpos,
+            doubles(word(data + offsets[Offset.geom_xmat]), ngeom, 9),
+            sea[1],
+            waves,
+            time,
+            kind == Pressure.froude_krylov,
+            row(scratch, Scratch.depths),
+            heads,
+        )
+        pushed[:, :] = 0.0
+        wrenches.add_wave_pressure(
+            heads, wet, owners, words(water, Water.frames), geom_xpos, sea[0] * strength, xipos, pushed
+        )
+        for b in range(nbody):
+            for i in range(6):
+                total[b, i] += pushed[b, i]
     damped = words(water, Water.damped)
     if damped.shape[0] > 0:
         drag = grid(record, Record.drag)

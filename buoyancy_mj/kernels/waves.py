@@ -17,6 +17,35 @@ def elevation(waves, x, y, time):
     return total
 
 
+@njit(cache=True)
+def head(waves, x, y, z, time, dynamic):
+    """Pressure over rho g [m] at height z over the still level: the depth, or with `dynamic` that of linear waves.
+
+    Newman 1977, 6.2: the elevation times cosh k (z + h) over cosh k h, less z. Wheeler's stretching
+    (1970, J. Petroleum Technology 22, 359) brings the surface to the theory's still level, so that
+    the pressure is zero on it, under crests and in troughs.
+    """
+    eta = elevation(waves, x, y, time)
+    if not dynamic:
+        return eta - z
+    total = -z
+    many = waves.shape[0]
+    for i in range(many):
+        a = eta
+        if many > 1:
+            a = waves[i, 0] * math.cos(waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4])
+        depth = waves[i, 5]
+        k = math.hypot(waves[i, 1], waves[i, 2])
+        if k > 0.0:
+            below = z - eta
+            if math.isfinite(depth):
+                below = max(depth * below / (depth + eta), -depth) if depth + eta > 0.0 else -depth
+                a *= (1.0 + math.exp(-2.0 * k * (below + depth))) / (1.0 + math.exp(-2.0 * k * depth))
+            a *= math.exp(k * below)
+        total += a
+    return total
+
+
 SHORT = 1.6
 """Angle [rad] for which the series of `bend` hold; twice that, and four times that, by doubling."""
 # one over factorials, of the odd and of the even terms

@@ -25,6 +25,28 @@ def add_buoyancy(wet, bodies, weight, xipos, out):
 
 
 @njit(cache=True)
+def add_wave_pressure(heads, wet, owners, frames, positions, weight, xipos, out):
+    """Add to rows of `out` (nbody, 6) what the pressure `weight` [N/m^3] times `heads` (h, 6) has beyond buoyancy.
+
+    The heads are about the origin of each hull's frame, see `pressure.press_hulls`; the torque is about `xipos`.
+    """
+    for h in range(owners.shape[0]):
+        b, o = owners[h], positions[frames[h]]
+        fx, fy, fz = weight * heads[h, 0], weight * heads[h, 1], weight * heads[h, 2]
+        x, y, z = o[0] - xipos[b, 0], o[1] - xipos[b, 1], o[2] - xipos[b, 2]
+        lift = weight * wet[h, 0]
+        out[b, 0] += fx
+        out[b, 1] += fy
+        out[b, 2] += fz - lift
+        out[b, 3] += weight * heads[h, 3] + y * fz - z * fy
+        out[b, 4] += weight * heads[h, 4] + z * fx - x * fz
+        out[b, 5] += weight * heads[h, 5] + x * fy - y * fx
+        if lift != 0.0:
+            out[b, 3] -= (wet[h, 2] - xipos[b, 1]) * lift
+            out[b, 4] += (wet[h, 1] - xipos[b, 0]) * lift
+
+
+@njit(cache=True)
 def add_drag(
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     bodies,  # (n,) bodies that have drag

@@ -1,0 +1,291 @@
+"""Wave pressure: the mean-value theorem, a published table, limits, a slow twin, and the compiled path."""
+
+import math
+
+import mujoco
+import numpy as np
+import pytest
+import trimesh
+from scipy.special import j1
+
+from buoyancy_mj import Buoyancy, LevelOscillation, MethodError, RegularWave, TriMesh, Water, add_water, shapes, water_in
+from buoyancy_mj.exact import PackedHulls
+from buoyancy_mj.kernels.waves import head
+from buoyancy_mj.scene import scene_from_table
+from tests import vessels
+
+BALL = trimesh.creation.icosphere(subdivisions=4)
+# scaled to the volume of a ball of radius 1
+BALL = TriMesh(BALL.vertices * (4 / 3 * math.pi / BALL.volume) ** (1 / 3), BALL.faces)
+
+
+def press(mesh, water, place, turn=None, time=0.0, dynamic=True):
+    """Force over rho g [m^3] and torque over rho g about the frame's origin [m^4]."""
+    packed = PackedHulls([mesh], [0], [0], water)
+    rotation = np.eye(3) if turn is None else turn
+    return packed.press(np.array([place], float), rotation.reshape(1, 9), time, dynamic=dynamic)[0]
+
+
+def heads(water, points, time, dynamic):
+    """Pressure heads at points."""
+    return np.array([head(water.rows, *point, time, dynamic) for point in points])
+
+
+# the pressure
+
+
+@pytest.mark.parametrize("depth", [math.inf, 3.0])
+def test_pressure_is_zero_on_the_surface_and_the_still_waters_far_below_deep_waves(depth):
+    water = Water(waves=[RegularWave(0.3, wavelength=7.0, depth=depth), RegularWave(0.1, wavelength=3.0, direction=1.0)])
+    for x, y, t in ((0.0, 0.0, 0.0), (1.0, -2.0, 0.7), (3.0, 1.0, 2.0)):
+        eta = float(water.elevation(x, y, t))
+        assert head(water.rows, x, y, eta, t, True) == pytest.approx(0.0, abs=1e-15)
+        assert head(water.rows, x, y, eta - 0.4, t, False) == pytest.approx(0.4, rel=1e-12)
+    if math.isinf(depth):
+        assert head(water.rows, 0.0, 0.0, -50.0, 0.0, True) == pytest.approx(50.0, rel=1e-12)
+
+
+def test_at_small_steepness_it_is_that_of_linear_theory():
+    # Newman 1977, 6.2: A cosh k (z + h) / cosh k h cos, less z
+    wave = RegularWave(1e-4, period=4.0, depth=10.0)
+    k, h = float(np.hypot(*wave.rows[0, 1:3])), 10.0
+    for z in (-0.5, -3.0, -10.0):
+        expected = 1e-4 * math.cosh(k * (z + h)) / math.cosh(k * h) - z
+        assert head(Water(waves=wave).rows, 0.0, 0.0, z, 0.0, True) - expected == pytest.approx(0.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("kind", [False, True])
+def test_a_level_that_goes_up_and_down_adds_its_height(kind):
+    water = Water(waves=LevelOscillation(0.3, 0.5))
+    assert head(water.rows, 1.0, 2.0, -1.0, 0.0, kind) == pytest.approx(1.0 + float(water.elevation(1.0, 2.0, 0.0)))
+
+
+# forces on fixed bodies
+
+
+@pytest.mark.parametrize("kr", [0.1, 0.3, 0.6, 1.0])
+@pytest.mark.parametrize("shape", ["ball", "cylinder"])
+def test_under_water_the_force_is_minus_volume_times_the_gradient_at_the_centre(kr, shape):
+    # mean value of a harmonic field over a ball, or over the circle of a cylinder along the crests
+    amplitude, depth = 1e-4, 1.5
+    wave = RegularWave(amplitude, wavelength=2 * math.pi / kr)
+    mesh = BALL
+    if shape == "cylinder":
+        along = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+        mesh = shapes.cylinder(1.0, 2.0).transformed(along)
+    size = mesh.volume * amplitude * kr * math.exp(-kr * depth)
+    for time in np.linspace(0.0, wave.period, 7):
+        force = press(mesh, Water(waves=wave), (0.0, 0.0, -depth), time=time)[:3] - [0.0, 0.0, mesh.volume]
+        phase = -2 * math.pi * time / wave.period
+        # of constant magnitude, and downward under the crest
+        assert force == pytest.approx(size * np.array([math.sin(phase), 0.0, -math.cos(phase)]), abs=0.01 * size)
+
+
+@pytest.mark.parametrize(
+    ("period", "fraction"),
+    # P14, IEA OES Task 10: sphere of 5 m, half in the water, Froude-Krylov heave force over rho g pi R^2 A
+    [
+        (3, 0.094),
+        (4, 0.355),
+        (4.4, 0.440),
+        (5, 0.543),
+        (6, 0.665),
+        (7, 0.746),
+        (8, 0.801),
+        (9, 0.840),
+        (10, 0.869),
+        (11, 0.890),
+    ],
+)
+def test_a_floating_hemisphere_is_lifted_by_its_published_fraction(period, fraction):
+    amplitude = 1e-3
+    water = Water(waves=RegularWave(amplitude, period=period))
+    ball = TriMesh(5.0 * BALL.vertices, BALL.faces)
+    still = press(ball, Water(), (0, 0, 0))[2]
+    area = math.pi * 25.0 * amplitude
+    quarter = period / 4
+    # the crest passes at 0, and the force over a quarter of a period tells amplitude and phase
+    lifts = [press(ball, water, (0, 0, 0), time=t)[2] - still for t in (0.0, quarter)]
+    assert math.hypot(*lifts) / area == pytest.approx(fraction, abs=0.004)
+    # of the surface alone: 2 J1(kR) / kR
+    kr = float(np.hypot(*water.rows[0, 1:3])) * 5.0
+    lifts = [press(ball, water, (0, 0, 0), time=t, dynamic=False)[2] - still for t in (0.0, quarter)]
+    assert math.hypot(*lifts) / area == pytest.approx(abs(2 * j1(kr) / kr), abs=0.004)
+
+
+@pytest.mark.parametrize("dynamic", [False, True])
+@pytest.mark.parametrize("place", [(0.3, -0.2, 0.1), (0.0, 0.4, -0.9), (0.2, 0.1, -3.0)])
+@pytest.mark.parametrize("name", ["dented", "box"])
+def test_it_is_what_a_fine_sum_over_small_triangles_gives(name, place, dynamic):
+    mesh = vessels.dented(4) if name == "dented" else shapes.box((1.0, 0.5, 0.4))
+    waves = [RegularWave(0.06, wavelength=4.0, direction=0.4), RegularWave(0.03, wavelength=2.5, direction=2.0, phase=1.0)]
+    water = Water(waves=waves)
+    turn = trimesh.transformations.rotation_matrix(0.7, [1, 2, 3])[:3, :3]
+    row = press(mesh, water, place, turn, 0.3, dynamic)
+    fine = trimesh.Trimesh(mesh.vertices @ turn.T + place, mesh.faces, process=False)
+    for _ in range(4 if name == "dented" else 7):
+        fine = fine.subdivide()
+    points, vectors = fine.triangles_center, fine.face_normals * fine.area_faces[:, None]
+    values = np.maximum(heads(water, points, 0.3, dynamic), 0.0)
+    # above the surface of the water there is none
+    values[points[:, 2] > water.elevation(points[:, 0], points[:, 1], 0.3)] = 0.0
+    force = -(values[:, None] * vectors).sum(axis=0)
+    torque = -np.cross(points - place, values[:, None] * vectors).sum(axis=0)
+    assert row[:3] == pytest.approx(force, abs=1e-3 * mesh.volume)
+    assert row[3:] == pytest.approx(torque, abs=1e-3 * mesh.volume)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_on_still_water_it_is_archimedes(seed):
+    rng = np.random.default_rng(seed)
+    mesh, place = vessels.dented(seed), rng.uniform(-0.5, 0.5, 3) + [30.0, -20.0, 0.0]
+    turn = trimesh.transformations.random_rotation_matrix(rng.uniform(size=3))[:3, :3]
+    wet = PackedHulls([mesh], [0], [0], Water()).submerge(place[None], turn.reshape(1, 9), 0.0)[0]
+    row = press(mesh, Water(), place, turn)
+    assert row[:3] == pytest.approx([0.0, 0.0, wet[0]], abs=1e-10 * mesh.volume)
+    assert row[3:] == pytest.approx(np.cross(wet[1:4] - place, [0.0, 0.0, wet[0]]), abs=1e-10 * mesh.volume)
+
+
+def test_large_triangles_are_summed_finely_enough():
+    # a box of 12 triangles, three waves long, under water: the integral over its faces is known
+    k, a = 2 * math.pi, 1e-4
+    water = Water(waves=RegularWave(a, wavelength=1.0))
+    half = np.array([1.4, 0.3, 0.2])
+    force = press(shapes.box(half), water, (0.1, 0.0, -0.5))[:3] - [0.0, 0.0, 8 * np.prod(half)]
+    decay = math.exp(-k * 0.7) - math.exp(-k * 0.3)
+    lift = a * 2 * half[1] * decay * (math.sin(k * 1.5) - math.sin(-k * 1.3)) / k
+    assert force[2] == pytest.approx(lift, rel=1e-2)
+
+
+def test_under_a_slope_the_depth_alone_pushes_by_the_slope():
+    # F = -rho g V grad(elevation), for a body short beside the wave
+    wave = RegularWave(1e-3, wavelength=100.0)
+    time = wave.period / 4
+    force = press(BALL, Water(waves=wave), (0.0, 0.0, -2.0), time=time, dynamic=False)
+    slope = 1e-3 * 2 * math.pi / 100.0
+    # the mean of the slope over the ball is less by (k R)^2 / 10
+    assert force[:3] == pytest.approx(BALL.volume * np.array([-slope, 0.0, 1.0]), abs=1e-3 * slope * BALL.volume)
+
+
+# a body that moves
+
+
+def floater(draft, period, pressure):
+    """Response amplitude and phase of a slender wall-sided body that is free to heave, by simulation."""
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="0.002" integrator="RK4"/><worldbody><body><joint type="slide" axis="0 0 1"/>
+        <geom type="box" size=".02 .02 1" mass="{1000 * 0.04**2 * draft}" pos="0 0 {1 - draft}"/></body></worldbody>
+        </mujoco>"""
+    )
+    amplitude = 0.002
+    water = Water(waves=RegularWave(amplitude, period=period))
+    data = mujoco.MjData(model)
+    data.qpos[0] = amplitude
+    omega, natural = 2 * math.pi / period, math.sqrt(9.81 / draft)
+    times, heights = [], []
+    with Buoyancy(model, water, drag=None, pressure=pressure).installed():
+        while data.time < 6 * period:
+            times.append(data.time)
+            heights.append(data.qpos[0])
+            mujoco.mj_step(model, data)
+    t = np.array(times)
+    swings = [np.cos(omega * t), np.sin(omega * t), np.cos(natural * t), np.sin(natural * t), np.ones(len(t))]
+    c, s, *_ = np.linalg.lstsq(np.column_stack(swings), heights, rcond=None)[0] / amplitude
+    return math.hypot(c, s), math.atan2(s, c), omega**2 / 9.81 * draft
+
+
+@pytest.mark.parametrize("pressure", ["archimedes", "hydrostatic", "froude-krylov"])
+def test_on_long_waves_it_rides_the_surface_without_lag(pressure):
+    # P17: T = 10 T_n; of the surface alone 1 / (1 - (T_n / T)^2) = 1.010, with the pressure e^-kd of it, 1.000
+    draft = 0.5
+    response, phase, kd = floater(draft, 10 * 2 * math.pi * math.sqrt(draft / 9.81), pressure)
+    assert phase == pytest.approx(0.0, abs=1e-3)
+    assert kd == pytest.approx(0.01, rel=1e-6)
+    expected = 1 / (1 - kd) * (math.exp(-kd) if pressure == "froude-krylov" else 1.0)
+    assert response == pytest.approx(expected, abs=5e-4)
+    assert response == pytest.approx(1.010 if pressure != "froude-krylov" else 1.000, abs=5e-4)
+
+
+@pytest.mark.parametrize("pressure", ["archimedes", "froude-krylov"])
+def test_in_short_waves_the_surface_alone_lifts_a_deep_body_too_far(pressure):
+    # 1 / (1 - kd), against e^-kd / (1 - kd) with the pressure: at kd = 0.5 twice, and 1.21
+    draft = 0.5
+    response, _, kd = floater(draft, 2 * math.pi * math.sqrt(draft / 9.81) / math.sqrt(0.5), pressure)
+    assert kd == pytest.approx(0.5)
+    assert response == pytest.approx(2.0 if pressure == "archimedes" else 2.0 * math.exp(-0.5), rel=5e-3)
+
+
+# as loads of a model
+
+
+MODEL = """<mujoco><option timestep="0.01"/><worldbody><body name="a" pos="0 0 -.1"><freejoint/>
+<geom type="box" size=".5 .3 .2" mass="60" pos=".1 0 0"/><geom type="sphere" size=".2" pos="0 0 -.6" mass="20"/>
+<body pos=".6 0 0"><joint axis="0 1 0"/><geom type="capsule" size=".1 .2" mass="9"/></body></body></worldbody></mujoco>"""
+SEA = Water(waves=[RegularWave(0.1, wavelength=3.0, direction=0.3), RegularWave(0.05, wavelength=2.0, phase=1.0)])
+
+
+@pytest.mark.parametrize("pressure", ["hydrostatic", "froude-krylov"])
+def test_it_is_a_named_cause_and_the_hulls_add_up(pressure):
+    model = mujoco.MjModel.from_xml_string(MODEL)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    plain = Buoyancy(model, SEA, drag=None).evaluate(data)
+    water = Buoyancy(model, SEA, drag=None, pressure=pressure)
+    loads = water.evaluate(data)
+    assert list(loads.by_cause) == ["buoyancy", "wave_pressure"]
+    assert loads.by_cause["buoyancy"] == pytest.approx(plain.by_cause["buoyancy"], abs=1e-12)
+    pushed = loads.by_cause["wave_pressure"][:, :3].sum(axis=0)
+    assert np.abs(pushed).max() > 1.0
+    assert loads.total.force == pytest.approx(plain.total.force + pushed, abs=1e-9)
+    assert loads.hull.force.sum(axis=0) == pytest.approx(loads.total.force, abs=1e-9)
+    # each hull's torque about its body's centre of mass, summed by body
+    about = np.zeros((model.nbody, 3))
+    np.add.at(about, [hull.body for hull in water.hulls], loads.hull.torque)
+    assert loads.body.torque == pytest.approx(about, abs=1e-9)
+
+
+@pytest.mark.parametrize("pressure", ["hydrostatic", "froude-krylov"])
+@pytest.mark.parametrize("native", [True, False])
+def test_compiled_and_python_paths_and_the_plugin_move_alike(native, pressure):
+    model = mujoco.MjModel.from_xml_string(MODEL)
+    data = mujoco.MjData(model)
+    with Buoyancy(model, SEA, pressure=pressure).installed(native=native):
+        mujoco.mj_step(model, data, 100)
+    spec = mujoco.MjSpec.from_string(MODEL)
+    add_water(spec, SEA, pressure=pressure)
+    own = spec.compile()
+    theirs = mujoco.MjData(own)
+    mujoco.mj_step(own, theirs, 100)
+    assert theirs.qpos == pytest.approx(data.qpos, abs=1e-12)
+    assert water_in(own).causes == ("buoyancy", "wave_pressure", "drag")
+    assert 'key="pressure" value="' + pressure in spec.to_xml()
+
+
+def test_where_there_are_no_waves_nothing_changes():
+    model = mujoco.MjModel.from_xml_string(MODEL)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    plain, other = (Buoyancy(model, pressure=p).evaluate(data) for p in ("archimedes", "froude-krylov"))
+    assert np.array_equal(plain.total.force, other.total.force)
+    assert np.array_equal(other.by_cause["wave_pressure"], np.zeros((model.nbody, 6)))
+    assert np.array_equal(plain.hull.torque, other.hull.torque)
+
+
+def test_a_scene_says_which():
+    table = {"title": "t", "vehicle": "hourglass", "pressure": "froude-krylov"}
+    assert scene_from_table(table).pressure == "froude-krylov"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"pressure": "dynamic"}, "pressure is 'dynamic'; possible: archimedes, froude-krylov, hydrostatic"),
+        (
+            {"pressure": "hydrostatic", "method": "sections"},
+            "pressure 'hydrostatic' needs the method 'exact', not 'sections'",
+        ),
+    ],
+)
+def test_what_makes_no_sense_is_told(arguments, message):
+    with pytest.raises(MethodError, match=message):
+        Buoyancy(mujoco.MjModel.from_xml_string(MODEL), **arguments)
