@@ -22,6 +22,8 @@ from buoyancy_mj.water import Water
 
 LEAD, FOAM = 11_340.0, 200.0
 """Densities [kg/m^3] of what is added, unless said otherwise: lead, and closed-cell PVC foam as used under water."""
+_NOBODY = 1 << 30
+"""A contype that meets nothing, for geoms that MuJoCo must not discard as visual, as it does by default in URDF."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -85,7 +87,7 @@ class Ballast:
             body.ipos, body.inertia = [0.0] * 3, [0.4 * one.mass * one.radius**2] * 3
             if one.displaces:
                 ball = mujoco.mjtGeom.mjGEOM_SPHERE
-                body.add_geom(name=name, type=ball, size=[one.radius, 0.0, 0.0], contype=0, conaffinity=0, mass=0.0)
+                body.add_geom(name=name, type=ball, size=[one.radius, 0.0, 0.0], contype=_NOBODY, conaffinity=0, mass=0.0)
                 for text in spec.texts:
                     if text.name.rsplit("/", 1)[-1] == GEOMS:
                         text.data = f"{text.data} {name}"

@@ -16,8 +16,8 @@ from buoyancy_mj.hydrostatics import Hydrostatics, attitude, hydrostatics_of
 from buoyancy_mj.vessel import Afloat, Vessel, vessel_of
 from buoyancy_mj.water import Water
 
-INDIFFERENT = 1e-4
-"""Part of the largest eigenvalue below which nothing restores worth the name: a period a hundred times the shortest."""
+INDIFFERENT = 1e-3
+"""Part of the largest eigenvalue below which nothing restores worth the name: a period thirty times the shortest."""
 LEVEL, SOFT = 1e-6, 1e-2
 """Energy over weight times radius by which a valley may rise, and how soft it is beside what crosses it."""
 

@@ -133,7 +133,10 @@ def _primitive(model: mujoco.MjModel, geom: int) -> tuple[float, ...]:
 
 def mesh_name(model: mujoco.MjModel, geom: int) -> str:
     """What messages call the mesh of a geom."""
-    return f"mesh '{model.mesh(int(model.geom_dataid[geom])).name}' of geom '{geom_name(model, geom)}'"
+    asset = int(model.geom_dataid[geom])
+    sharing = np.flatnonzero((model.geom_type == _MESH) & (model.geom_dataid == asset))
+    others = f" and {len(sharing) - 1} more" if len(sharing) > 1 else ""
+    return f"mesh '{model.mesh(asset).name}' of geom '{geom_name(model, int(sharing[0]))}'{others}"
 
 
 @functools.lru_cache(maxsize=64)

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.balance import NEUTRAL
+from buoyancy_mj.balance import NEUTRAL, floated
 from buoyancy_mj.choice import Considered, body_name, considered, fills_of, geom_kind, geom_name, shapes_of
 from buoyancy_mj.equilibrium import Equilibrium, rest, stable_rests
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, MeshError
@@ -21,6 +21,8 @@ from buoyancy_mj.righting import RightingArm, curve
 from buoyancy_mj.vessel import PLAUSIBLE, Vessel, vessel_with
 from buoyancy_mj.water import Water
 
+LEVELLED = 1e-4
+"""Fall of energy, over weight times radius, below which a vessel rests as drawn."""
 THIN, HOLLOW = 0.02, 0.3
 """A wall is thin below this part of its mesh's size, and a mesh hollow below this part of its convex hull."""
 _STANDARD = 1000.0
@@ -298,6 +300,10 @@ def _sentence(vessel: Vessel, surplus: float, found: Equilibrium | None) -> str:
     at = found.hydrostatics
     lean = math.degrees(math.acos(max(-1.0, min(1.0, math.cos(at.heel) * math.cos(at.trim)))))
     drawn = vessel.rotation[2] @ _at(vessel, found).rotation[2]
+    # a ball rests as well as drawn
+    drop = floated(vessel, vessel.rotation).energy - found.energy
+    if drop < LEVELLED * vessel.weight * vessel.radius:
+        return f"floats: {surplus:.3g} kg reserve, draft {at.draft:.3g} m, {found.stability}, GM {at.GM:.3g} m"
     tipped = "" if drawn > math.cos(math.radians(5.0)) else ", not as drawn"
     heel, trim = (round(math.degrees(angle), 1) + 0.0 for angle in (at.heel, at.trim))
     leaning = f", heel {heel:.1f}, trim {trim:.1f} degrees" if lean > 0.1 else ""

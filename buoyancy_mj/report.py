@@ -163,7 +163,7 @@ def _floats(floating: Floating) -> list[Section]:
     header = ("body", "mass [kg]", "displaces [kg]", "reserve [kg]", "net lift [N]")
     centres = (
         f"CG {_point(floating.centre_of_gravity)} m, CB submerged {_point(floating.centre_of_buoyancy)} m in its own frame, "
-        f"{_number(float(np.linalg.norm(floating.vessel.centroid)))} m apart"
+        f"{_number(round(float(np.linalg.norm(floating.vessel.centroid)), 6))} m apart"
     )
     result = [Section(f"Will '{total.body}' float?", header, tuple(rows), (floating.sentence, centres, *floating.notes))]
     if floating.rest is not None:

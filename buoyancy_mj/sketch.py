@@ -40,7 +40,7 @@ def recorded(found: Inspection, path: Path) -> Path:
     stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     stream.log("report", rr.TextDocument(report.markdown(found), media_type="text/markdown"), static=True)
     for floating in found.floating:
-        _log(stream, f"world/{floating.total.body}", floating)
+        _log(stream, f"world/{rr.escape_entity_path_part(floating.total.body)}", floating)
     file.write()
     return file.close(complete=True)
 
@@ -78,7 +78,11 @@ def _log(stream: rr.RecordingStream, entity: str, floating: Floating) -> None:
     size = 2.0 * vessel.radius
     for name, mesh, fill in zip(vessel.names, vessel.meshes, vessel.fills, strict=True):
         placed = mesh.transformed(vessel.rotation, vessel.position)
-        stream.log(f"{entity}/hull/{name}", _hull(placed, level, size, WET if fill == 1.0 else FLOODED), static=True)
+        stream.log(
+            f"{entity}/hull/{rr.escape_entity_path_part(name)}",
+            _hull(placed, level, size, WET if fill == 1.0 else FLOODED),
+            static=True,
+        )
     centre = np.array([*vessel.position[:2], level])
     half = 0.9 * size
     corners = centre + half * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
@@ -102,7 +106,7 @@ def _log(stream: rr.RecordingStream, entity: str, floating: Floating) -> None:
     _log_points(stream, entity, points, size)
     arm = floating.righting
     if arm is not None:
-        name = f"righting/{floating.total.body}"
+        name = f"righting/{rr.escape_entity_path_part(floating.total.body)}"
         stream.send_columns(
             name,
             indexes=[rr.TimeColumn("heel [degrees]", sequence=np.round(np.degrees(arm.heel)).astype(np.int64))],

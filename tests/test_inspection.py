@@ -354,6 +354,41 @@ def test_ballast_writes_a_vehicle_that_hovers(raft, tmp_path):
     assert found["floating"][0]["sentence"].startswith("hovers: neutral, BG ")
 
 
+def test_names_may_hold_anything_and_a_mesh_of_two_geoms_is_told_once(tmp_path, capfd):
+    faces = np.vstack([BALL.faces[1:], BALL.faces[5:6]])
+    trimesh.Trimesh(BALL.vertices * 100.0, faces, process=False).export(tmp_path / "ball.obj")
+    (tmp_path / "odd.xml").write_text(
+        """<mujoco><compiler angle="degree"/><asset><mesh name="a/b" file="ball.obj" scale="-.01 .01 .012" refpos=".01 0 0"
+        refquat=".9 .1 0 0" inertia="shell"/></asset><worldbody><body name="boat/one [x]" euler="0 0 30"><freejoint/>
+        <inertial pos="0 0 -.05" mass="30" diaginertia="1 1 1"/><geom name="g/1" type="mesh" mesh="a/b" euler="10 20 30"/>
+        <geom type="mesh" mesh="a/b" pos=".8 .2 0"/></body></worldbody></mujoco>"""
+    )
+    flags = [
+        "--repair",
+        str(tmp_path / "m" / "odd.xml"),
+        "--record",
+        str(tmp_path / "odd.rrd"),
+        "--plot",
+        str(tmp_path / "p"),
+    ]
+    before = CliRunner().invoke(app, ["inspect", str(tmp_path / "odd.xml"), "--json", *flags])
+    assert before.exit_code == 0, before.output
+    assert before.stderr.count("mended mesh 'a/b' of geom 'g/1' and 1 more") == 1
+    # Rerun complains of paths that are not escaped
+    assert "Unescaped" not in capfd.readouterr().err
+    after = CliRunner().invoke(app, ["inspect", str(tmp_path / "m" / "odd.xml"), "--json"])
+    one, two = (json.loads(result.stdout)["floating"][0] for result in (before, after))
+    assert two["centre_of_buoyancy"] == pytest.approx(one["centre_of_buoyancy"], abs=1e-6)
+    assert two["displaced"] == pytest.approx(one["displaced"], rel=1e-5)
+
+
+def test_a_ball_rests_as_drawn():
+    model = vessels.of_geoms('<geom type="sphere" size=".2" mass="5"/>')
+    sentence = only(model).sentence
+    assert sentence.startswith("floats: 28.5 kg reserve, draft 0.0976 m, indifferent, GM ")
+    assert "drawn" not in sentence
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

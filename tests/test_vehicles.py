@@ -162,3 +162,18 @@ def test_an_open_shell_is_refused_and_its_convex_hull_floats(tmp_path):
     found, _ = inspected(path, "--hull", "convex")
     assert found["geoms"][0]["hull"] == "convex"
     ran(path, "--hull", "convex")
+
+
+def test_ballast_stays_in_a_urdf(tmp_path):
+    # MuJoCo discards what is visual alone in URDF, and fuses what does not move
+    stl(tmp_path, "base.stl", shapes.box((0.2, 0.2, 0.1)))
+    path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=10, inertia=0.2))
+    heavy = str(tmp_path / "out" / "robot.xml")
+    flags = ["--reserve", "0", "--box", "-.1", "-.1", "-.4", ".1", ".1", "-.3"]
+    result = CliRunner().invoke(app, ["ballast", path, *flags, "--out", heavy])
+    assert result.exit_code == 0, result.output
+    found, _ = inspected(heavy)
+    assert found["floating"][0]["sentence"].startswith("hovers: neutral")
+    assert "ballast_box" in [geom["name"] for geom in found["geoms"]]
+    # and touches nothing
+    assert ran(heavy)[0]["contact_steps"] == 0

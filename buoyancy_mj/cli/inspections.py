@@ -142,9 +142,13 @@ def _repair(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection, path:
     for part, geom in zip(found.parts, range(model.ngeom), strict=True):
         was = part.diagnosis
         if was is not None and was.mesh is not None and was.mended:
-            mended[int(model.geom_dataid[geom])] = was.mesh
+            asset = int(model.geom_dataid[geom])
+            if asset in mended:
+                continue
+            mended[asset] = was.mesh
             change = was.mesh.volume - was.volume_as_is
-            err.print(f"mended {was.name}: {was.mesh.volume:.4g} m^3, {change:+.3g} m^3 against as it was", highlight=False)
+            told = f"mended {was.name}: {was.mesh.volume:.4g} m^3, {change:+.3g} m^3 against as it was"
+            err.print(told, highlight=False, soft_wrap=True)
     if not mended:
         err.print("no mesh was mended: none needs it, or what does cannot be mended safely", highlight=False)
         return
