@@ -66,6 +66,7 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
                 method=scene.method,
                 pressure=scene.pressure,
                 drag=scene.drag,
+                added_mass=scene.added_mass,
                 geoms=scene.geoms,
                 hull=scene.hull,
                 fill=scene.fill,

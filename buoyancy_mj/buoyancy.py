@@ -3,19 +3,20 @@
 import contextlib
 import functools
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj import callbacks
+from buoyancy_mj.added_mass import added_masses
 from buoyancy_mj.drag import Drag, estimated
 from buoyancy_mj.errors import EngineError, MethodError, ModelError, choices
 from buoyancy_mj.exact import Exact, PackedHulls
 from buoyancy_mj.geoms import displacing_hulls
-from buoyancy_mj.kernels import clip, wrenches
-from buoyancy_mj.kernels.native import Pressure
+from buoyancy_mj.kernels import clip, inertia, wrenches
+from buoyancy_mj.kernels.native import Id, Pressure
 from buoyancy_mj.loads import Loads, Portion
 from buoyancy_mj.methods import Method, method_of
 from buoyancy_mj.native import CAUSES, Native, Record
@@ -44,6 +45,9 @@ class Buoyancy:
             source paper; "hydrostatic" for that of the depth under the surface, which pushes along the
             slope too; "froude-krylov" for that of linear waves, which fades with depth. See `kernels.waves.head`.
         drag: how damping is estimated; None for none.
+        added_mass: "model" for what the model's `<custom>` states, numerics 'added_mass:BODY' with 6 or 36
+            numbers; "estimate" for that, and an estimate where there is none; "none"; or matrices (6, 6) or
+            diagonals (6,) by the name of the body. See `added_mass`.
         method: how the submersion is found: "exact", or the source paper's "convex_hull" and
             "sections", or one of `Exact`, `ConvexHull`, `Sections` with options.
 
@@ -65,6 +69,7 @@ class Buoyancy:
         bodies: Sequence[int] | None = None,
         pressure: str = "archimedes",
         drag: Drag | None = Drag(),
+        added_mass: str | Mapping[str, ArrayLike] | None = "model",
         method: str | Method = "exact",
     ) -> None:
         self.model = model
@@ -89,6 +94,8 @@ class Buoyancy:
             [hull.fill for hull in self.hulls],
         )
         self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
+        self.added_mass = added_masses(model, self.hulls, self.water.density, added_mass)
+        """Added mass of those bodies that have one."""
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
         roots = set(model.body_rootid[self.bodies].tolist())
@@ -96,6 +103,7 @@ class Buoyancy:
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
         self._rows, self._current = self.water.rows, np.array(self.water.current)
         acting = {"wave_pressure": self.pressure != Pressure.archimedes, "drag": drag is not None}
+        acting["added_mass"] = len(self.added_mass.bodies) > 0
         self.causes = tuple(cause for cause in CAUSES if acting.get(cause, True))
         """Names of the loads that act."""
         # what a step writes to; threads that share this object take turns
@@ -145,6 +153,8 @@ class Buoyancy:
             if data._address == self._last_data and np.array_equal(passive, self._after):
                 passive[:] = self._before
             self._before[:] = passive
+            if len(self.added_mass.bodies):
+                self._make_heavier(data, record)
             wrenches.project(
                 record.total,
                 self.bodies,
@@ -220,7 +230,7 @@ class Buoyancy:
 
     def record(self) -> Record:
         """Room for what one evaluation leaves."""
-        return Record(len(self.hulls), self.model.nbody, self.causes)
+        return Record(len(self.hulls), self.model.nbody, self.causes, self.model.nC)
 
     @functools.cached_property
     def native(self) -> Native:
@@ -230,7 +240,15 @@ class Buoyancy:
             EngineError: this MuJoCo is not as expected inside.
         """
         return Native(
-            self.model, self.water, self.packed, self._owners, self._damping, self.causes, self.pressure, self._lock
+            self.model,
+            self.water,
+            self.packed,
+            self._owners,
+            self._damping,
+            self.added_mass,
+            self.causes,
+            self.pressure,
+            self._lock,
         )
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
@@ -291,6 +309,63 @@ class Buoyancy:
                 drag,
             )
             record.total += drag
+        if len(self.added_mass.bodies):
+            reaction, added = record.causes["added_mass"], self.added_mass
+            reaction[:] = 0.0
+            inertia.add_reaction(
+                record.centres,
+                added.bodies,
+                added.volumes,
+                added.matrices,
+                data.xipos,
+                data.xpos,
+                data.xmat,
+                data.cvel,
+                data.subtree_com,
+                model.body_rootid,
+                model.body_parentid,
+                model.body_dofnum,
+                model.body_dofadr,
+                model.dof_parentid,
+                data.cdof_dot,
+                data.qvel,
+                self.water.level,
+                self._rows,
+                self._current,
+                data.time,
+                reaction,
+            )
+            record.total += reaction
+
+    def _make_heavier(self, data: mujoco.MjData, record: Record) -> None:
+        """Add the added mass to the engine's mass matrix, once in each pass."""
+        model, added, heavier = self.model, self.added_mass, record.ids[Id.heavier]
+        if heavier and np.array_equal(data.M, record.inertia):
+            return
+        record.ids[Id.heavier] = inertia.add_inertia(
+            record.centres,
+            added.bodies,
+            added.volumes,
+            added.matrices,
+            data.xpos,
+            data.xmat,
+            data.subtree_com,
+            model.body_rootid,
+            model.body_parentid,
+            model.body_dofnum,
+            model.body_dofadr,
+            model.dof_parentid,
+            data.cdof,
+            model.M_rownnz,
+            model.M_rowadr,
+            model.M_colind,
+            data.M,
+        )
+        if record.ids[Id.heavier]:
+            mujoco.mj_factorM(model, data)
+            if model.opt.solver == mujoco.mjtSolver.mjSOL_PGS or model.opt.noslip_iterations > 0:
+                mujoco.mj_projectConstraint(model, data)
+            record.inertia[:] = data.M
 
     @property
     def _presses(self) -> bool:

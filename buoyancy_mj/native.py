@@ -14,11 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj import layout
+from buoyancy_mj.added_mass import AddedMass
 from buoyancy_mj.drag import Damping
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.exact import PackedHulls
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels import native as kernel
+from buoyancy_mj.kernels import plugin as entries
 from buoyancy_mj.kernels.closures import Closure
 from buoyancy_mj.methods import Packed
 from buoyancy_mj.water import Water
@@ -29,17 +31,17 @@ _WORD = ctypes.c_int64
 _SIGNATURES = {
     kernel.act: "int64(int64, int64, int64, int64)",
     kernel.callback: "void(int64, int64, int64, int64, int64)",
-    kernel.plugin_nstate: "int32(int64, int32)",
-    kernel.plugin_reset: "void(int64, int64, int64, int32)",
-    kernel.plugin_init: "int32(int64, int64, int32, int64)",
-    kernel.plugin_destroy: "void(int64, int32, int64)",
-    kernel.plugin_copy: "void(int64, int64, int64, int32, int64)",
-    kernel.plugin_compute: "void(int64, int64, int32, int32, int64)",
+    entries.nstate: "int32(int64, int32)",
+    entries.reset: "void(int64, int64, int64, int32)",
+    entries.init: "int32(int64, int64, int32, int64)",
+    entries.destroy: "void(int64, int32, int64)",
+    entries.copy: "void(int64, int64, int64, int32, int64)",
+    entries.compute: "void(int64, int64, int32, int32, int64)",
 }
 """Functions that C calls, with what is bound to them last."""
 
 
-CAUSES = ("buoyancy", "wave_pressure", "drag")
+CAUSES = ("buoyancy", "wave_pressure", "drag", "added_mass")
 """Names of all loads that there are."""
 
 
@@ -57,20 +59,24 @@ class Table:
 class Record(Table):
     """What an evaluation leaves: submersions, and wrenches by cause and in total, see `Loads`."""
 
-    def __init__(self, hulls: int, bodies: int, causes: Sequence[str]) -> None:
-        """For a number of hulls and of bodies of the model, and the names of the loads that act."""
+    def __init__(self, hulls: int, bodies: int, causes: Sequence[str], inertias: int) -> None:
+        """For a number of hulls, of bodies and of elements of the mass matrix, and the names of the loads that act."""
         rows = {cause: np.zeros((bodies if cause in causes else 0, 6)) for cause in CAUSES}
         self.results, self.centres = np.zeros((hulls, clip.COLUMNS)), np.zeros((bodies, 4))
         self.heads = np.zeros((hulls, 6))
         """Pressure on the hulls, see `kernels.pressure`; zeros where it is not asked for."""
         self.causes = {cause: rows[cause] for cause in causes}
         self.total = np.zeros((bodies, 6))
+        self.inertia = np.zeros(inertias if "added_mass" in causes else 0)
+        """The mass matrix with the added mass in it, as it was left."""
         self.instant = np.zeros(1)
         """Time [s] of it."""
         self.ids = np.zeros(len(kernel.Id), np.int64)
         """See `kernels.native.Id`."""
+        plain: dict[str, NDArray[Any]]
         plain = {"results": self.results, "centres": self.centres, "heads": self.heads, "total": self.total}
-        super().__init__(kernel.Record, rows | plain | {"instant": self.instant, "ids": self.ids})
+        plain |= {"inertia": self.inertia, "instant": self.instant, "ids": self.ids}
+        super().__init__(kernel.Record, rows | plain)
 
 
 def ids(record: int) -> NDArray[np.int64]:
@@ -90,6 +96,7 @@ class Native:
         packed: Packed,
         owners: NDArray[np.int64],
         damping: Damping | None,
+        added: AddedMass,
         causes: Sequence[str],
         pressure: kernel.Pressure,
         lock: threading.RLock,
@@ -102,6 +109,7 @@ class Native:
             packed: its hulls; those of `Exact` are submerged by compiled code.
             owners: the body of each (h,).
             damping: the drag of the bodies.
+            added: their added mass.
             causes: names of the loads that act.
             pressure: what the pressure in waves is taken for.
             lock: held while hulls are submerged by Python code.
@@ -112,7 +120,8 @@ class Native:
         available()
         exact = isinstance(packed, PackedHulls)
         hulls = packed.arrays if isinstance(packed, PackedHulls) else NO_HULLS
-        self._scratch = [_Scratch(hulls, Record(len(owners), model.nbody, causes)) for _ in range(THREADS)]
+        self._new_record = functools.partial(Record, len(owners), model.nbody, causes, model.nC)
+        self._scratch = [_Scratch(hulls, self._new_record()) for _ in range(THREADS)]
         self._packed, self._lock, self._geoms = packed, lock, model.ngeom
         self._submerge = told(self._submerged)
         self._text = c_text("gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>")
@@ -123,6 +132,8 @@ class Native:
             0 if exact else address(self._submerge),
             layout.symbol("mju_error"),
             ctypes.addressof(self._text),
+            layout.symbol("mj_factorM"),
+            layout.symbol("mj_projectConstraint"),
         ]
         drag = damping or NO_DAMPING
         self._table = Table(
@@ -138,6 +149,9 @@ class Native:
                 "quadratic": drag.quadratic,
                 "members": drag.members,
                 "member_starts": drag.member_starts,
+                "massive": added.bodies,
+                "massive_volumes": added.volumes,
+                "added": added.matrices,
                 "sea": np.array([water.density, water.level, float(pressure)]),
                 "current": np.array(water.current, float),
                 "offsets": np.array([layout.offset(path) for path in kernel.OFFSETS]),
@@ -147,7 +161,6 @@ class Native:
         )
         self.address = self._table.address
         """Of the table of the water."""
-        self._new_record = functools.partial(Record, len(owners), model.nbody, causes)
         self._records: list[Record] = []
         self._room = 16
 
@@ -270,8 +283,9 @@ def available() -> None:
     Raises:
         EngineError: it does not.
     """
-    if int(mujoco.mjtDisableBit.mjDSBL_GRAVITY) != kernel.NO_GRAVITY:
-        raise EngineError(f"MuJoCo {mujoco.__version__} has another flag for gravity; use buoyancy.installed(native=False)")
+    theirs = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY), int(mujoco.mjtSolver.mjSOL_PGS)
+    if theirs != (kernel.NO_GRAVITY, kernel.PGS):
+        raise EngineError(f"MuJoCo {mujoco.__version__} has other flags than expected; use buoyancy.installed(native=False)")
     layout.verify(kernel.OFFSETS)
     layout.symbol("mju_error")
 

@@ -27,6 +27,7 @@ from buoyancy_mj.callbacks import PLUGIN, plugin_instances, skips_passive
 from buoyancy_mj.drag import Drag
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, choices
 from buoyancy_mj.kernels import native as kernel
+from buoyancy_mj.kernels import plugin as entries
 from buoyancy_mj.kernels.closures import Closure
 from buoyancy_mj.methods import Method, method_of
 from buoyancy_mj.settings import KEYS, Settings, settings_from_texts, texts_from_settings
@@ -37,7 +38,8 @@ KEPT = 32
 _READ = (
     "geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group", "geom_size", "geom_pos",
     "geom_quat", "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face", "body_parentid",
-    "body_weldid", "body_pos", "body_quat", "body_plugin", "text_adr", "text_size", "text_data", "names", "plugin",
+    "body_weldid", "body_pos", "body_quat", "body_plugin", "text_adr", "text_size", "text_data", "numeric_adr",
+    "numeric_size", "numeric_data", "names", "plugin",
 )  # fmt: skip
 """Arrays of mjModel of which the hulls and their drag are made: models that agree in them share one water.
 
@@ -58,6 +60,7 @@ def add_water(
     method: str | Method = "exact",
     pressure: str = "archimedes",
     drag: Drag | None = Drag(),
+    added_mass: str = "model",
     geoms: str | Sequence[str] | None = None,
     hull: str | Sequence[str] | None = None,
     fill: str | Sequence[str] | None = None,
@@ -71,6 +74,7 @@ def add_water(
         method: how the submersion is found, see `Buoyancy`.
         pressure: what the pressure in waves is taken for, likewise.
         drag: how damping is estimated; None for none.
+        added_mass: "model", "estimate" or "none", likewise.
         geoms: which geoms displace water, see `Buoyancy`.
         hull: which of them as their convex hull, likewise.
         fill: and which displace in part, likewise.
@@ -88,7 +92,9 @@ def add_water(
         name: None if words is None else (words,) if isinstance(words, str) else tuple(words)
         for name, words in (("geoms", geoms), ("hull", hull), ("fill", fill))
     }
-    settings = Settings(water=water or Water(), method=method_of(method), pressure=pressure, drag=drag, **chosen)
+    settings = Settings(
+        water=water or Water(), method=method_of(method), pressure=pressure, drag=drag, added_mass=added_mass, **chosen
+    )
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
     plugin.config = texts_from_settings(settings)
@@ -180,6 +186,7 @@ def _made(model: mujoco.MjModel, instance: int) -> Buoyancy:
         bodies=_joined(model, instance),
         pressure=settings.pressure,
         drag=settings.drag,
+        added_mass=settings.added_mass,
         method=settings.method,
     )
 
@@ -260,12 +267,12 @@ class _Engine:
         self._context = np.array(context, np.uint64).astype(np.int64)
         bound = self._context.ctypes.data
         self._functions: dict[str, Closure] = {
-            "nstate": native.closure(kernel.plugin_nstate, _INT, (_WORD, _INT)),
-            "init": native.closure(kernel.plugin_init, _INT, (_WORD, _WORD, _INT), bound),
-            "destroy": native.closure(kernel.plugin_destroy, None, (_WORD, _INT), bound),
-            "copy": native.closure(kernel.plugin_copy, None, (_WORD, _WORD, _WORD, _INT), bound),
-            "reset": native.closure(kernel.plugin_reset, None, (_WORD, _WORD, _WORD, _INT)),
-            "compute": native.closure(kernel.plugin_compute, None, (_WORD, _WORD, _INT, _INT), bound),
+            "nstate": native.closure(entries.nstate, _INT, (_WORD, _INT)),
+            "init": native.closure(entries.init, _INT, (_WORD, _WORD, _INT), bound),
+            "destroy": native.closure(entries.destroy, None, (_WORD, _INT), bound),
+            "copy": native.closure(entries.copy, None, (_WORD, _WORD, _WORD, _INT), bound),
+            "reset": native.closure(entries.reset, None, (_WORD, _WORD, _WORD, _INT)),
+            "compute": native.closure(entries.compute, None, (_WORD, _WORD, _INT, _INT), bound),
         }
         self._attributes = (ctypes.c_char_p * len(KEYS))(*(key.encode() for key in KEYS))
         self._plugin = _Plugin(

@@ -98,6 +98,8 @@ class Scene:
     """What the pressure in waves is taken for, see `Buoyancy`: archimedes, hydrostatic, froude-krylov."""
     drag: Drag | None = Drag()
     """How damping is estimated; None for none."""
+    added_mass: str = "model"
+    """Where the added mass of the bodies comes from, see `Buoyancy`: model, estimate, none."""
     method: Method = Exact()
     """How the submersion is found."""
     mass: float | None = None

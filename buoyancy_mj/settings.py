@@ -17,7 +17,7 @@ from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
 
 WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
 """Kinds of waves."""
-KEYS = ("density", "level", "waves", "current", "method", "pressure", "drag", "geoms", "hull", "fill")
+KEYS = ("density", "level", "waves", "current", "method", "pressure", "drag", "added_mass", "geoms", "hull", "fill")
 """What texts describe: the fields of `Water`, and the arguments of `Buoyancy`."""
 _CHOICES = KEYS[-3:]
 """Words about geoms."""
@@ -35,6 +35,8 @@ class Settings:
     """What the pressure in waves is taken for."""
     drag: Drag | None = Drag()
     """How damping is estimated; None for none."""
+    added_mass: str = "model"
+    """Where the bodies' added mass comes from."""
     geoms: tuple[str, ...] | None = None
     """Which geoms displace water."""
     hull: tuple[str, ...] | None = None
@@ -115,6 +117,7 @@ def settings_from_texts(texts: Mapping[str, str], where: str) -> Settings:
         water=water_from_table(sea, where),
         method=method_from_table(_words(given.get("method", "exact"), f"{where}: method"), f"{where}: method"),
         pressure=given.get("pressure", "archimedes"),
+        added_mass=given.get("added_mass", "model"),
         drag=drag_from_table(_words(drag, f"{where}: drag") if "=" in drag else plain_value(drag), f"{where}: drag"),
         **{key: tuple(given[key].replace(",", " ").split()) for key in _CHOICES if key in given},
     )
@@ -135,7 +138,7 @@ def texts_from_settings(settings: Settings) -> dict[str, str]:
     if type(method) not in METHODS.values():
         raise MethodError(f"{method!r} cannot be written into a model; possible are {', '.join(METHODS)}")
     texts["method"] = " ".join([method.name, *_fields(method)])
-    texts["pressure"] = settings.pressure
+    texts["pressure"], texts["added_mass"] = settings.pressure, settings.added_mass
     texts["drag"] = " ".join(_fields(settings.drag, all_of_them=True)) if settings.drag else "false"
     texts |= {key: " ".join(getattr(settings, key) or ()) for key in _CHOICES}
     return {key: text for key, text in texts.items() if text}

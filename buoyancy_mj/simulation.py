@@ -51,6 +51,7 @@ class Simulation:
                 fill=scene.fill,
                 pressure=scene.pressure,
                 drag=scene.drag,
+                added_mass=scene.added_mass,
                 method=scene.method,
             )
             self._acting = self.buoyancy.installed

@@ -87,7 +87,7 @@ def test_any_field_can_be_set(folder, setting, look):
     [
         (
             "durations=2",
-            "unknown key 'durations'; did you mean 'duration'? possible: cog_shift, drag, duration, environment",
+            "unknown key 'durations'; did you mean 'duration'? possible: added_mass, cog_shift, drag, duration",
         ),
         ("water.densty=2", "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level"),
         ("water.waves.0.kind=choppy", "water.waves.0: unknown kind 'choppy'; possible: level, regular"),

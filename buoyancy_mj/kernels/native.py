@@ -10,7 +10,7 @@ from enum import IntEnum
 import numpy as np
 from numba import carray, njit
 
-from buoyancy_mj.kernels import clip, pressure, wrenches
+from buoyancy_mj.kernels import clip, inertia, pressure, wrenches
 from buoyancy_mj.kernels.memory import (
     call,
     corners,
@@ -29,19 +29,20 @@ from buoyancy_mj.kernels.memory import (
 
 Water = IntEnum(
     "Water",
-    "vertices faces areas nodes spans boxes moments whole frames waves "
-    "owners bodies damped volumes linear quadratic members member_starts sea current offsets pool links",
+    "vertices faces areas nodes spans boxes moments whole frames waves owners bodies damped volumes linear quadratic "
+    "members member_starts massive massive_volumes added sea current offsets pool links",
     start=0,
 )
 """Arrays of a water; 'sea' is density, level and `Pressure`, 'owners' the body of each hull, 'damped' those with drag."""
 Pressure = IntEnum("Pressure", "archimedes hydrostatic froude_krylov", start=0)
 """What the water's pressure in waves is taken for."""
-Link = IntEnum("Link", "model signature act submerge error gravity_text", start=0)
+Link = IntEnum("Link", "model signature act submerge error gravity_text factor project", start=0)
 """Words of 'links': the own model and its signature; C functions, 0 for none; a text for the engine's error function."""
-Record = IntEnum("Record", "results centres heads buoyancy wave_pressure drag total instant ids", start=0)
+Record = IntEnum("Record", "results centres heads buoyancy wave_pressure drag added_mass total inertia instant ids", start=0)
 """Arrays of what an evaluation leaves."""
-Id = IntEnum("Id", "alive model data water sizes", start=0)
-"""Words of 'ids': whether it is in use; addresses of what it is of; and a sum over the sizes of the model's geoms."""
+Id = IntEnum("Id", "alive model data water sizes heavier", start=0)
+"""Words of 'ids': whether it is in use; addresses of what it is of; a sum over the sizes of the model's geoms; and
+whether 'inertia' is a mass matrix with added mass in it."""
 Scratch = IntEnum("Scratch", "depths swell state", start=0)
 """Arrays to work in."""
 State = IntEnum("State", "taken record", start=0)
@@ -50,18 +51,19 @@ Context = IntEnum("Context", "plugin_data resolve error", start=0)
 """Words that a plugin is given: the offset of that field, and C functions."""
 Offset = IntEnum(
     "Offset",
-    "timestep gravity disableflags nbody ngeom nv signature body_parentid body_rootid body_dofnum body_dofadr body_mass "
-    "body_inertia dof_parentid geom_size time geom_xpos geom_xmat xipos ximat xmat subtree_com cvel cdof qfrc_passive",
+    "timestep gravity disableflags solver noslip_iterations nbody ngeom nv nC signature body_parentid body_rootid "
+    "body_dofnum body_dofadr body_mass body_inertia dof_parentid M_rownnz M_rowadr M_colind geom_size time qvel geom_xpos "
+    "geom_xmat xpos xipos ximat xmat subtree_com cvel cdof cdof_dot M qfrc_passive",
     start=0,
 )
-"""What is read of the engine's options, model and data; the last is written."""
+"""What is read of the engine's options, model and data; the last two are written."""
 OFFSETS = tuple(
     f"mjModel.opt.{entry.name}" if entry < Offset.nbody else f"{'mjModel' if entry < Offset.time else 'mjData'}.{entry.name}"
     for entry in Offset
 )
 """Where each is."""
-NO_GRAVITY = 1 << 7
-"""MuJoCo's mjDSBL_GRAVITY; see `native`, which checks it."""
+NO_GRAVITY, PGS = 1 << 7, 0
+"""MuJoCo's mjDSBL_GRAVITY and mjSOL_PGS; see `native`, which checks them."""
 
 
 # what acts
@@ -183,6 +185,8 @@ def _evaluate(model, data, water, scratch, record):
         for b in range(nbody):
             for i in range(6):
                 total[b, i] += drag[b, i]
+    if words(water, Water.massive).shape[0] > 0:
+        _add_mass(model, data, water, record, time)
     wrenches.project(
         total,
         words(water, Water.bodies),
@@ -200,6 +204,92 @@ def _evaluate(model, data, water, scratch, record):
     ids[Id.model], ids[Id.data] = model, data
     row(record, Record.instant)[0] = time
     return 0
+
+
+@njit(cache=True)
+def _add_mass(model, data, water, record, time):
+    """Add the added mass to the engine's mass matrix, once in each pass, and the rest of its reaction to the total."""
+    offsets, links = words(water, Water.offsets), words(water, Water.links)
+    nbody, nv = word(model + offsets[Offset.nbody]), word(model + offsets[Offset.nv])
+    centres, total = grid(record, Record.centres), grid(record, Record.total)
+    massive, volumes = words(water, Water.massive), row(water, Water.massive_volumes)
+    matrices, sea = grid(water, Water.added), row(water, Water.sea)
+    xpos, xmat = (
+        doubles(word(data + offsets[Offset.xpos]), nbody, 3),
+        doubles(word(data + offsets[Offset.xmat]), nbody, 9),
+    )
+    subtree_com = doubles(word(data + offsets[Offset.subtree_com]), nbody, 3)
+    roots = int32s(word(model + offsets[Offset.body_rootid]), nbody)
+    parents = int32s(word(model + offsets[Offset.body_parentid]), nbody)
+    dofnum = int32s(word(model + offsets[Offset.body_dofnum]), nbody)
+    dofadr = int32s(word(model + offsets[Offset.body_dofadr]), nbody)
+    dof_parents = int32s(word(model + offsets[Offset.dof_parentid]), nv)
+    reaction = grid(record, Record.added_mass)
+    reaction[:, :] = 0.0
+    inertia.add_reaction(
+        centres,
+        massive,
+        volumes,
+        matrices,
+        doubles(word(data + offsets[Offset.xipos]), nbody, 3),
+        xpos,
+        xmat,
+        doubles(word(data + offsets[Offset.cvel]), nbody, 6),
+        subtree_com,
+        roots,
+        parents,
+        dofnum,
+        dofadr,
+        dof_parents,
+        doubles(word(data + offsets[Offset.cdof_dot]), nv, 6),
+        carray(pointer(word(data + offsets[Offset.qvel])), (nv,), np.float64),
+        sea[1],
+        grid(water, Water.waves),
+        row(water, Water.current),
+        time,
+        reaction,
+    )
+    for b in range(nbody):
+        for i in range(6):
+            total[b, i] += reaction[b, i]
+    # where the engine goes over a pass again without computing its mass matrix anew, it is heavier already
+    count = word(model + offsets[Offset.nC])
+    mass = carray(pointer(word(data + offsets[Offset.M])), (count,), np.float64)
+    left, ids = row(record, Record.inertia), words(record, Record.ids)
+    if ids[Id.heavier] != 0:
+        same = True
+        for e in range(count):
+            same = same and mass[e] == left[e]
+        if same:
+            return
+    ids[Id.heavier] = 0
+    if inertia.add_inertia(
+        centres,
+        massive,
+        volumes,
+        matrices,
+        xpos,
+        xmat,
+        subtree_com,
+        roots,
+        parents,
+        dofnum,
+        dofadr,
+        dof_parents,
+        doubles(word(data + offsets[Offset.cdof]), nv, 6),
+        int32s(word(model + offsets[Offset.M_rownnz]), nv),
+        int32s(word(model + offsets[Offset.M_rowadr]), nv),
+        int32s(word(model + offsets[Offset.M_colind]), count),
+        mass,
+    ):
+        call(links[Link.factor], model, data, 0, 0)
+        # what solvers of the dual problem have made of the mass matrix before
+        solver = carray(pointer(model + offsets[Offset.solver]), (1,), np.int32)[0]
+        noslip = carray(pointer(model + offsets[Offset.noslip_iterations]), (1,), np.int32)[0]
+        if solver == PGS or noslip > 0:
+            call(links[Link.project], model, data, 0, 0)
+        ids[Id.heavier] = 1
+        left[:] = mass
 
 
 @njit(cache=True)
@@ -225,7 +315,7 @@ def act(model, data, water, record):
 
 
 @njit(cache=True)
-def _act_or_fail(model, data, water, record):
+def act_or_fail(model, data, water, record):
     """Act, and tell the engine what fails."""
     links = words(water, Water.links)
     text = call(links[Link.act], model, data, water, record)
@@ -245,86 +335,4 @@ def callback(model, data, water, previous, copies):
     if not own and copies != 0:
         own = word(model + words(water, Water.offsets)[Offset.signature]) == links[Link.signature]
     if own:
-        _act_or_fail(model, data, water, 0)
-
-
-# what an engine plugin is made of
-
-
-@njit(cache=True, inline="always")
-def _slot(data, instance, context):
-    """Address of the word that the engine keeps for an instance in its data."""
-    return word(data + word(context + 8 * Context.plugin_data)) + 8 * instance
-
-
-@njit(cache=True)
-def _resolved(model, data, instance, context):
-    """Let Python find the water of a model and put a record of it into the data; tells the engine what fails."""
-    text = call(word(context + 8 * Context.resolve), model, data, instance, 0)
-    if text != 0:
-        call(word(context + 8 * Context.error), text, 0, 0, 0)
-
-
-def plugin_nstate(model, instance):
-    """The engine asks how many numbers of an instance are part of a state: none."""
-    return 0
-
-
-def plugin_reset(model, state, record, instance):
-    """The engine resets a data: no loads are of it any more."""
-    if record != 0:
-        words(record, Record.ids)[Id.data] = 0
-
-
-def plugin_init(model, data, instance, context):
-    """The engine has made a data."""
-    carray(pointer(_slot(data, instance, context)), (1,), np.int64)[0] = 0
-    _resolved(model, data, np.int64(instance), context)
-    return 0
-
-
-def plugin_destroy(data, instance, context):
-    """The engine frees a data: its record may serve another."""
-    record = word(_slot(data, instance, context))
-    if record != 0:
-        words(record, Record.ids)[Id.alive] = 0
-
-
-def plugin_copy(target, model, source, instance, context):
-    """The engine copies a data: the record's contents go along, if both are of one water."""
-    one, other = word(_slot(target, instance, context)), word(_slot(source, instance, context))
-    if one == 0 or other == 0 or words(one, Record.ids)[Id.water] != words(other, Record.ids)[Id.water]:
-        return
-    for k in range(Record.ids):
-        grid(one, k)[:, :] = grid(other, k)
-    words(one, Record.ids)[Id.data] = target if words(other, Record.ids)[Id.data] == source else 0
-
-
-def plugin_compute(model, data, instance, capability, context):
-    """The engine wants the passive forces of an instance."""
-    record = word(_slot(data, instance, context))
-    # stepped with another model than before, or with other geoms in it
-    if (
-        record == 0
-        or words(record, Record.ids)[Id.model] != model
-        or words(record, Record.ids)[Id.sizes] != _sizes(model, record)
-    ):
-        _resolved(model, data, np.int64(instance), context)
-        record = word(_slot(data, instance, context))
-        if record == 0:
-            # Python is just reading the model
-            return
-        words(record, Record.ids)[Id.sizes] = _sizes(model, record)
-    _act_or_fail(model, data, words(record, Record.ids)[Id.water], record)
-
-
-@njit(cache=True)
-def _sizes(model, record):
-    """A sum over the bits of the sizes of all geoms, which another size changes."""
-    offsets = words(words(record, Record.ids)[Id.water], Water.offsets)
-    count = 3 * word(model + offsets[Offset.ngeom])
-    bits = carray(pointer(word(model + offsets[Offset.geom_size])), (count,), np.int64)
-    total = np.int64(0)
-    for i in range(count):
-        total = 31 * total + bits[i]
-    return total
+        act_or_fail(model, data, water, 0)

@@ -112,6 +112,27 @@ def add_velocity(waves, x, y, z, time, out):
 
 
 @njit(cache=True)
+def add_acceleration(waves, x, y, z, time, out):
+    """Add the rows' orbital acceleration [m/s^2], at one place, to `out` (3,): the rate of `add_velocity` in time."""
+    z = min(z, 0.0)
+    for i in range(waves.shape[0]):
+        amplitude, kx, ky, omega = waves[i, 0], waves[i, 1], waves[i, 2], waves[i, 3]
+        angle = kx * x + ky * y - omega * time + waves[i, 4]
+        k = math.hypot(kx, ky)
+        if k == 0.0:
+            out[2] -= amplitude * omega * omega * math.cos(angle)
+            continue
+        depth = waves[i, 5]
+        height = max(z, -depth)
+        decay = math.exp(k * height) / (-math.expm1(-2.0 * k * depth))
+        echo = math.exp(-2.0 * k * (height + depth))
+        horizontal = amplitude * omega * omega * decay * (1.0 + echo) * math.sin(angle)
+        out[0] += horizontal * kx / k
+        out[1] += horizontal * ky / k
+        out[2] -= amplitude * omega * omega * decay * (1.0 - echo) * math.cos(angle)
+
+
+@njit(cache=True)
 def velocities(waves, points, level, time, out):
     """`add_velocity` at many points (n, 3), added to `out` (n, 3)."""
     for i in range(points.shape[0]):

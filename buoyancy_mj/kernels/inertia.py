@@ -1,0 +1,185 @@
+"""Added mass: into the engine's own mass matrix, and what of it depends on velocities and the water's acceleration.
+
+The water opposes a body's motion with -A (dv - du) - C(v - u) (v - u), in the body's axes: v its velocity,
+dv the rate of those components, u the water's there (Fossen 2021, sec. 6.3 and 8.1). The part -A dv that
+goes with the engine's accelerations stands in its mass matrix, so that it cannot be unstable.
+"""
+
+import numpy as np
+from numba import njit
+
+from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+
+
+@njit(cache=True)
+def _to_body(r, arm, out):
+    """The matrix (6, 6) from MuJoCo's velocities (rotation, translation `arm` off) to translation, rotation along r."""
+    for i in range(3):
+        a0, a1, a2 = r[i], r[3 + i], r[6 + i]
+        out[i, 0], out[i, 1], out[i, 2] = arm[1] * a2 - arm[2] * a1, arm[2] * a0 - arm[0] * a2, arm[0] * a1 - arm[1] * a0
+        out[i, 3], out[i, 4], out[i, 5] = a0, a1, a2
+        out[3 + i, 0], out[3 + i, 1], out[3 + i, 2] = a0, a1, a2
+        out[3 + i, 3:6] = 0.0
+
+
+@njit(cache=True, inline="always")
+def _share(centres, b, volume):
+    """The part of a body's volume that is wet."""
+    return min(centres[b, 0] / volume, 1.0)
+
+
+@njit(cache=True)
+def add_inertia(
+    centres,  # (nbody, 4) submerged volume and its centroid, of each body
+    bodies,  # (n,) bodies that have added mass
+    volumes,  # (n,) their whole volumes
+    matrices,  # (n, 36) in the axes of each body, about its origin: translation, rotation
+    xpos,  # (nbody, 3)
+    xmat,  # (nbody, 9)
+    subtree_com,  # (nbody, 3)
+    roots,  # (nbody,)
+    parents,  # (nbody,)
+    dofnum,  # (nbody,)
+    dofadr,  # (nbody,)
+    dof_parents,  # (nv,)
+    cdof,  # (nv, 6)
+    rownnz,  # (nv,) of the mass matrix, lower triangle by rows
+    rowadr,  # (nv,)
+    colind,  # (nC,)
+    mass,  # (nC,)
+):
+    """Add J^T A J of each body, scaled with the wet part of its volume; gives whether any was."""
+    p, g = np.empty((6, 6)), np.empty((6, 6))
+    u = np.empty(6)
+    added = False
+    for n in range(bodies.shape[0]):
+        b = bodies[n]
+        wet = _share(centres, b, volumes[n])
+        if not wet > 0.0:
+            continue
+        added = True
+        _to_body(xmat[b], xpos[b] - subtree_com[roots[b]], p)
+        for i in range(6):
+            for j in range(6):
+                total = 0.0
+                for k in range(6):
+                    for m in range(6):
+                        total += p[k, i] * matrices[n, 6 * k + m] * p[m, j]
+                g[i, j] = wet * total
+        while b > 0 and dofnum[b] == 0:
+            b = parents[b]
+        i = dofadr[b] + dofnum[b] - 1 if b > 0 else -1
+        while i >= 0:
+            for k in range(6):
+                u[k] = 0.0
+                for m in range(6):
+                    u[k] += g[k, m] * cdof[i, m]
+            # the columns of a row are the dof itself, last, and those above it
+            for e in range(rowadr[i], rowadr[i] + rownnz[i]):
+                c = cdof[colind[e]]
+                mass[e] += c[0] * u[0] + c[1] * u[1] + c[2] * u[2] + c[3] * u[3] + c[4] * u[4] + c[5] * u[5]
+            i = dof_parents[i]
+    return added
+
+
+@njit(cache=True)
+def add_reaction(
+    centres,  # likewise
+    bodies,
+    volumes,
+    matrices,
+    xipos,
+    xpos,
+    xmat,
+    cvel,  # (nbody, 6) MuJoCo's: rotation, then translation at the root's centre of mass
+    subtree_com,
+    roots,
+    parents,
+    dofnum,
+    dofadr,
+    dof_parents,
+    cdof_dot,  # (nv, 6)
+    qvel,  # (nv,)
+    level,
+    waves,
+    current,
+    time,
+    out,  # (nbody, 6)
+):
+    """Add the rest of the reaction, about `xipos`: all but -A times what the accelerations of the joints bring."""
+    p = np.empty((6, 6))
+    water, rush = np.empty(3), np.empty(3)
+    spin, rate, v, f = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
+    for n in range(bodies.shape[0]):
+        b = bodies[n]
+        wet = _share(centres, b, volumes[n])
+        if not wet > 0.0:
+            continue
+        r = xmat[b]
+        _to_body(r, xpos[b] - subtree_com[roots[b]], p)
+        # what the velocities of the joints bring to the acceleration
+        spin[:] = 0.0
+        a = b
+        while a > 0 and dofnum[a] == 0:
+            a = parents[a]
+        i = dofadr[a] + dofnum[a] - 1 if a > 0 else -1
+        while i >= 0:
+            for k in range(6):
+                spin[k] += cdof_dot[i, k] * qvel[i]
+            i = dof_parents[i]
+        water[:] = current
+        rush[:] = 0.0
+        add_velocity(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, water)
+        add_acceleration(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, rush)
+        for i in range(6):
+            v[i] = rate[i] = 0.0
+            for k in range(6):
+                v[i] += p[i, k] * cvel[b, k]
+                rate[i] += p[i, k] * spin[k]
+        u0, u1, u2 = _along(r, water)
+        a0, a1, a2 = _along(r, rush)
+        w0, w1, w2 = v[3], v[4], v[5]
+        # the rate of the water's components in axes that turn
+        rate[0] -= a0 - (w1 * u2 - w2 * u1)
+        rate[1] -= a1 - (w2 * u0 - w0 * u2)
+        rate[2] -= a2 - (w0 * u1 - w1 * u0)
+        v[0], v[1], v[2] = v[0] - u0, v[1] - u1, v[2] - u2
+        for i in range(6):
+            f[i] = _product(matrices[n], i, rate)
+            spin[i] = _product(matrices[n], i, v)
+        # C(v) v = (w x p, v x p + w x h) with momentum p, h
+        f[0] += w1 * spin[2] - w2 * spin[1]
+        f[1] += w2 * spin[0] - w0 * spin[2]
+        f[2] += w0 * spin[1] - w1 * spin[0]
+        f[3] += v[1] * spin[2] - v[2] * spin[1] + w1 * spin[5] - w2 * spin[4]
+        f[4] += v[2] * spin[0] - v[0] * spin[2] + w2 * spin[3] - w0 * spin[5]
+        f[5] += v[0] * spin[1] - v[1] * spin[0] + w0 * spin[4] - w1 * spin[3]
+        fx = -wet * (r[0] * f[0] + r[1] * f[1] + r[2] * f[2])
+        fy = -wet * (r[3] * f[0] + r[4] * f[1] + r[5] * f[2])
+        fz = -wet * (r[6] * f[0] + r[7] * f[1] + r[8] * f[2])
+        x, y, z = xpos[b, 0] - xipos[b, 0], xpos[b, 1] - xipos[b, 1], xpos[b, 2] - xipos[b, 2]
+        out[b, 0] += fx
+        out[b, 1] += fy
+        out[b, 2] += fz
+        out[b, 3] += y * fz - z * fy - wet * (r[0] * f[3] + r[1] * f[4] + r[2] * f[5])
+        out[b, 4] += z * fx - x * fz - wet * (r[3] * f[3] + r[4] * f[4] + r[5] * f[5])
+        out[b, 5] += x * fy - y * fx - wet * (r[6] * f[3] + r[7] * f[4] + r[8] * f[5])
+
+
+@njit(cache=True, inline="always")
+def _along(r, x):
+    """A vector of the world along the axes of r."""
+    return (
+        r[0] * x[0] + r[3] * x[1] + r[6] * x[2],
+        r[1] * x[0] + r[4] * x[1] + r[7] * x[2],
+        r[2] * x[0] + r[5] * x[1] + r[8] * x[2],
+    )
+
+
+@njit(cache=True, inline="always")
+def _product(matrix, i, x):
+    """Row i of a matrix (36,) times a vector (6,)."""
+    total = 0.0
+    for k in range(6):
+        total += matrix[6 * i + k] * x[k]
+    return total
