@@ -9,17 +9,18 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj import callbacks
+from buoyancy_mj import callbacks, passes
+from buoyancy_mj.acting import Acting
 from buoyancy_mj.added_mass import added_masses
 from buoyancy_mj.drag import Drag, estimated
 from buoyancy_mj.errors import EngineError, MethodError, ModelError, choices
-from buoyancy_mj.exact import Exact, PackedHulls
+from buoyancy_mj.exact import Exact
 from buoyancy_mj.geoms import displacing_hulls
-from buoyancy_mj.kernels import clip, inertia, wrenches
-from buoyancy_mj.kernels.native import Id, Pressure
+from buoyancy_mj.kernels import clip, wrenches
+from buoyancy_mj.kernels.native import Pressure
 from buoyancy_mj.loads import Loads, Portion
 from buoyancy_mj.methods import Method, method_of
-from buoyancy_mj.native import CAUSES, Native, Record
+from buoyancy_mj.native import Native, Record
 from buoyancy_mj.water import Water
 
 
@@ -93,19 +94,17 @@ class Buoyancy:
             turns,
             [hull.fill for hull in self.hulls],
         )
-        self._damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
         self.added_mass = added_masses(model, self.hulls, self.water.density, added_mass)
         """Added mass of those bodies that have one."""
+        damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
+        self._acting = Acting(self.water, self.packed, self._owners, self.pressure, damping, self.added_mass)
+        self.causes = self._acting.causes
+        """Names of the loads that act."""
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
         roots = set(model.body_rootid[self.bodies].tolist())
         self.floating = np.array([body for body in range(model.nbody) if model.body_rootid[body] in roots])
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
-        self._rows, self._current = self.water.rows, np.array(self.water.current)
-        acting = {"wave_pressure": self.pressure != Pressure.archimedes, "drag": drag is not None}
-        acting["added_mass"] = len(self.added_mass.bodies) > 0
-        self.causes = tuple(cause for cause in CAUSES if acting.get(cause, True))
-        """Names of the loads that act."""
         # what a step writes to; threads that share this object take turns
         self._looked, self._record = self.record(), self.record()
         self._before, self._after = np.zeros((2, model.nv))
@@ -147,14 +146,14 @@ class Buoyancy:
         """Add the forces to `data.qfrc_passive`, once in each pass."""
         with self._lock:
             record = self._record
-            self._compute(data, data._address, record)
+            self._evaluate(data, data._address, record)
             passive, model = data.qfrc_passive, self.model
             # finite differences call a control callback again without computing qfrc_passive anew
             if data._address == self._last_data and np.array_equal(passive, self._after):
                 passive[:] = self._before
             self._before[:] = passive
-            if len(self.added_mass.bodies):
-                self._make_heavier(data, record)
+            if self._acting.is_heavy:
+                passes.make_heavier(self._acting, self.model, data, record)
             wrenches.project(
                 record.total,
                 self.bodies,
@@ -177,7 +176,7 @@ class Buoyancy:
         """The loads at the poses and velocities that `data` holds, as mj_forward left them; writes nothing."""
         with self._lock:
             # as a run of its own, so that what the callback carries from step to step stays untouched
-            self._compute(data, -data._address, self._looked)
+            self._evaluate(data, -data._address, self._looked)
             return self.loads_of(self._looked, data)
 
     def loads(self, data: mujoco.MjData) -> Loads:
@@ -203,7 +202,7 @@ class Buoyancy:
         wet, centres, rows = record.results.copy(), record.centres.copy(), record.total.copy()
         xipos = data.xipos
         weight = self.water.density * self.gravity
-        if self._presses:
+        if self._acting.presses:
             force, about = weight * record.heads[:, :3], weight * record.heads[:, 3:]
             origins = data.geom_xpos[[hull.geom for hull in self.hulls]]
             torque = about + np.cross(origins - xipos[self._owners], force)
@@ -239,138 +238,15 @@ class Buoyancy:
         Raises:
             EngineError: this MuJoCo is not as expected inside.
         """
-        return Native(
-            self.model,
-            self.water,
-            self.packed,
-            self._owners,
-            self._damping,
-            self.added_mass,
-            self.causes,
-            self.pressure,
-            self._lock,
-        )
+        return Native(self.model, self._acting, self._lock)
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the floating bodies, world frame."""
         masses = self.model.body_mass[self.floating]
         return masses @ data.xipos[self.floating] / masses.sum()
 
-    def _compute(self, data: mujoco.MjData, run: int, record: Record) -> None:
-        """Submersion, then each cause, then their sum, into a record."""
-        model = self.model
-        record.instant[0] = data.time
-        record.results[:] = self.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
-        wrenches.merge(record.results, self._owners, record.centres)
-        buoyancy = record.causes["buoyancy"]
-        buoyancy[:] = 0.0
-        wrenches.add_buoyancy(record.results, self._owners, self.water.density * self.gravity, data.xipos, buoyancy)
-        record.total[:] = buoyancy
-        if self._presses:
-            assert isinstance(self.packed, PackedHulls)
-            pushed, dynamic = record.causes["wave_pressure"], self.pressure == Pressure.froude_krylov
-            pushed[:] = 0.0
-            record.heads[:] = self.packed.press(data.geom_xpos, data.geom_xmat, data.time, dynamic=dynamic)
-            wrenches.add_wave_pressure(
-                record.heads,
-                record.results,
-                self._owners,
-                self.packed.frames,
-                data.geom_xpos,
-                self.water.density * self.gravity,
-                data.xipos,
-                pushed,
-            )
-            record.total += pushed
-        if self._damping is not None:
-            drag, damping = record.causes["drag"], self._damping
-            drag[:] = 0.0
-            wrenches.add_drag(
-                record.centres,
-                damping.bodies,
-                damping.volumes,
-                damping.linear,
-                damping.quadratic,
-                damping.members,
-                damping.member_starts,
-                model.body_mass,
-                model.body_inertia,
-                data.xipos,
-                data.ximat,
-                data.xmat,
-                data.cvel,
-                data.subtree_com,
-                model.body_rootid,
-                self.water.level,
-                self._rows,
-                self._current,
-                data.time,
-                model.opt.timestep,
-                drag,
-            )
-            record.total += drag
-        if len(self.added_mass.bodies):
-            reaction, added = record.causes["added_mass"], self.added_mass
-            reaction[:] = 0.0
-            inertia.add_reaction(
-                record.centres,
-                added.bodies,
-                added.volumes,
-                added.matrices,
-                data.xipos,
-                data.xpos,
-                data.xmat,
-                data.cvel,
-                data.subtree_com,
-                model.body_rootid,
-                model.body_parentid,
-                model.body_dofnum,
-                model.body_dofadr,
-                model.dof_parentid,
-                data.cdof_dot,
-                data.qvel,
-                self.water.level,
-                self._rows,
-                self._current,
-                data.time,
-                reaction,
-            )
-            record.total += reaction
-
-    def _make_heavier(self, data: mujoco.MjData, record: Record) -> None:
-        """Add the added mass to the engine's mass matrix, once in each pass."""
-        model, added, heavier = self.model, self.added_mass, record.ids[Id.heavier]
-        if heavier and np.array_equal(data.M, record.inertia):
-            return
-        record.ids[Id.heavier] = inertia.add_inertia(
-            record.centres,
-            added.bodies,
-            added.volumes,
-            added.matrices,
-            data.xpos,
-            data.xmat,
-            data.subtree_com,
-            model.body_rootid,
-            model.body_parentid,
-            model.body_dofnum,
-            model.body_dofadr,
-            model.dof_parentid,
-            data.cdof,
-            model.M_rownnz,
-            model.M_rowadr,
-            model.M_colind,
-            data.M,
-        )
-        if record.ids[Id.heavier]:
-            mujoco.mj_factorM(model, data)
-            if model.opt.solver == mujoco.mjtSolver.mjSOL_PGS or model.opt.noslip_iterations > 0:
-                mujoco.mj_projectConstraint(model, data)
-            record.inertia[:] = data.M
-
-    @property
-    def _presses(self) -> bool:
-        """Whether the pressure is another than Archimedes': on still water it is not."""
-        return self.pressure != Pressure.archimedes and len(self._rows) > 0
+    def _evaluate(self, data: mujoco.MjData, run: int, record: Record) -> None:
+        passes.evaluate(self._acting, self.model, data, self.water.density * self.gravity, run, record)
 
     @property
     def gravity(self) -> float:

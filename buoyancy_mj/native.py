@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj import layout
-from buoyancy_mj.added_mass import AddedMass
+from buoyancy_mj.acting import CAUSES, Acting
 from buoyancy_mj.drag import Damping
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.exact import PackedHulls
@@ -22,8 +22,6 @@ from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels import native as kernel
 from buoyancy_mj.kernels import plugin as entries
 from buoyancy_mj.kernels.closures import Closure
-from buoyancy_mj.methods import Packed
-from buoyancy_mj.water import Water
 
 THREADS = 64
 """Threads that may act at once in one water; more take turns. What is not used costs no memory."""
@@ -39,10 +37,6 @@ _SIGNATURES = {
     entries.compute: "void(int64, int64, int32, int32, int64)",
 }
 """Functions that C calls, with what is bound to them last."""
-
-
-CAUSES = ("buoyancy", "wave_pressure", "drag", "added_mass")
-"""Names of all loads that there are."""
 
 
 class Table:
@@ -89,38 +83,22 @@ def ids(record: int) -> NDArray[np.int64]:
 class Native:
     """The water of one `Buoyancy`, ready for compiled code."""
 
-    def __init__(
-        self,
-        model: mujoco.MjModel,
-        water: Water,
-        packed: Packed,
-        owners: NDArray[np.int64],
-        damping: Damping | None,
-        added: AddedMass,
-        causes: Sequence[str],
-        pressure: kernel.Pressure,
-        lock: threading.RLock,
-    ) -> None:
+    def __init__(self, model: mujoco.MjModel, acting: Acting, lock: threading.RLock) -> None:
         """Gather it.
 
         Args:
             model: the model.
-            water: the sea.
-            packed: its hulls; those of `Exact` are submerged by compiled code.
-            owners: the body of each (h,).
-            damping: the drag of the bodies.
-            added: their added mass.
-            causes: names of the loads that act.
-            pressure: what the pressure in waves is taken for.
+            acting: what acts on it; hulls of `Exact` are submerged by compiled code.
             lock: held while hulls are submerged by Python code.
 
         Raises:
             EngineError: see `available`.
         """
         available()
+        packed, owners, water, added = acting.packed, acting.owners, acting.water, acting.added
         exact = isinstance(packed, PackedHulls)
         hulls = packed.arrays if isinstance(packed, PackedHulls) else NO_HULLS
-        self._new_record = functools.partial(Record, len(owners), model.nbody, causes, model.nC)
+        self._new_record = functools.partial(Record, len(owners), model.nbody, acting.causes, model.nC)
         self._scratch = [_Scratch(hulls, self._new_record()) for _ in range(THREADS)]
         self._packed, self._lock, self._geoms = packed, lock, model.ngeom
         self._submerge = told(self._submerged)
@@ -135,12 +113,12 @@ class Native:
             layout.symbol("mj_factorM"),
             layout.symbol("mj_projectConstraint"),
         ]
-        drag = damping or NO_DAMPING
+        drag = acting.damping or NO_DAMPING
         self._table = Table(
             kernel.Water,
             dict(hulls)
             | {
-                "waves": water.rows,
+                "waves": acting.rows,
                 "owners": owners.astype(np.int64),
                 "bodies": np.unique(owners).astype(np.int64),
                 "damped": drag.bodies.astype(np.int64),
@@ -152,8 +130,8 @@ class Native:
                 "massive": added.bodies,
                 "massive_volumes": added.volumes,
                 "added": added.matrices,
-                "sea": np.array([water.density, water.level, float(pressure)]),
-                "current": np.array(water.current, float),
+                "sea": np.array([water.density, water.level, float(acting.pressure)]),
+                "current": acting.current,
                 "offsets": np.array([layout.offset(path) for path in kernel.OFFSETS]),
                 "pool": np.array([scratch.address for scratch in self._scratch]),
                 "links": np.array(links, np.uint64).astype(np.int64),

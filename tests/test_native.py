@@ -330,7 +330,7 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
         mujoco.mj_setConst(model, data)
         # linear damping is estimated from gravity
         buoyancy = buoyancy or Buoyancy(model, SEA, drag=Drag(coefficient=100.0))
-        buoyancy._damping.linear[:] = 1.0
+        buoyancy._acting.damping.linear[:] = 1.0
         with buoyancy.installed(native=True):
             for _ in range(50):
                 mujoco.mj_step(model, data)
