@@ -13,9 +13,10 @@ from buoyancy_mj.choice import body_name
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hull import Hull
 from buoyancy_mj.mesh import TriMesh
+from buoyancy_mj.stated import body_of, stated
 
-NUMERIC = "added_mass:"
-"""What MJCF `<custom><numeric>` that state added mass start with, before the name of the body."""
+QUANTITY = "added_mass"
+"""What MJCF `<custom><numeric>` that state it start with; then a colon, and the name of the body."""
 SOURCES = ("model", "estimate", "none")
 """Where it may come from: what the model states; an estimate for what it does not state; nowhere."""
 
@@ -49,14 +50,14 @@ def added_masses(
             positive, or one that does not fit into what MuJoCo keeps of a body's inertia.
     """
     bodies = sorted({hull.body for hull in hulls})
-    names = {body_name(model, body): body for body in bodies}
     given: dict[int, NDArray[np.float64]] = {}
     if isinstance(source, Mapping):
-        given = {_body(names, name): _matrix(name, value) for name, value in source.items()}
+        given = {body_of(model, name, bodies, QUANTITY): _matrix(name, value) for name, value in source.items()}
     elif source not in (None, *SOURCES):
         raise ModelError(f"added mass is '{source}'; {choices(source, SOURCES)}, or matrices by body")
     elif source in ("model", "estimate"):
-        given = {_body(names, name): _matrix(name, value) for name, value in _stated(model)}
+        numbers = stated(model, QUANTITY, bodies)
+        given = {body: _matrix(body_name(model, body), value) for body, value in numbers.items()}
     if source == "estimate":
         estimates = {body: estimated([h for h in hulls if h.body == body], density) for body in bodies if body not in given}
         given |= estimates
@@ -118,23 +119,6 @@ def ellipsoid(radii: ArrayLike, density: float) -> NDArray[np.float64]:
         twist = alpha[k] - alpha[j]
         result[3 + i] = 0.2 * mass * difference**2 * twist / (2.0 * difference - total * twist)
     return result
-
-
-def _stated(model: mujoco.MjModel) -> list[tuple[str, NDArray[np.float64]]]:
-    """What the model's numerics state, by the name of the body."""
-    found = []
-    for i in range(model.nnumeric):
-        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_NUMERIC, i) or ""
-        if name.startswith(NUMERIC):
-            start = model.numeric_adr[i]
-            found.append((name.removeprefix(NUMERIC), np.array(model.numeric_data[start : start + model.numeric_size[i]])))
-    return found
-
-
-def _body(names: Mapping[str, int], name: str) -> int:
-    if name not in names:
-        raise ModelError(f"added mass is stated for body '{name}', which has no hull of its own; {choices(name, names)}")
-    return names[name]
 
 
 def _matrix(name: str, value: ArrayLike) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hull import Hull
 from buoyancy_mj.kernels.rays import silhouette
 from buoyancy_mj.mesh import TriMesh
+from buoyancy_mj.stated import stated
 
 CELLS = 200
 """Cells along each side of the grid on which a silhouette is measured."""
@@ -36,7 +37,10 @@ class Drag:
     2022, J. Mar. Sci. Eng. 10(12):1898) the two are equal at 0.10 m/s in surge and 0.17 m/s in
     heave, with L = 0.46 m a Froude number of 0.05 to 0.08.
 
-    It is an estimate: no added mass, no lift, no waves radiated, no skin friction.
+    It is an estimate: no added mass, no lift, no waves radiated, no skin friction. A body whose own
+    damping the model states, as numerics 'linear_damping:BODY' and 'quadratic_damping:BODY' of six
+    numbers each in `<custom>`, has that instead: force and torque per velocity and per velocity
+    squared along the body's axes, at the centroid of what is wet of it; Fossen's diagonals.
 
     Raises:
         ModelError: a negative or infinite value.
@@ -78,6 +82,7 @@ def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density:
     bodies = sorted({hull.body for hull in hulls})
     volumes = np.zeros(len(bodies))
     linear, quadratic = np.zeros((2, len(bodies), 6))
+    own_linear, own_quadratic = (stated(model, f"{kind}_damping", bodies) for kind in ("linear", "quadratic"))
     members = [np.flatnonzero(model.body_weldid == body) for body in bodies]
     for row, body in enumerate(bodies):
         mass = float(model.body_mass[members[row]].sum())
@@ -91,11 +96,27 @@ def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density:
         whole = np.array([hull.displacement for hull in own])
         volumes[row] = whole.sum()
         centre = whole @ [mesh.centroid for mesh in meshes] / volumes[row]
+        if body in own_linear or body in own_quadratic:
+            linear[row] = _diagonal(model, body, "linear", own_linear.get(body))
+            quadratic[row] = _diagonal(model, body, "quadratic", own_quadratic.get(body))
+            continue
         quadratic[row], length = _quadratic(0.5 * density * drag.coefficient, meshes, centre)
         slow = drag.linear_froude * math.sqrt(gravity * length)
         linear[row] = quadratic[row] * np.repeat([slow, slow / (0.5 * length)], 3)
     starts = np.cumsum([0, *(len(group) for group in members)])
     return Damping(np.array(bodies), volumes, linear, quadratic, np.concatenate(members).astype(np.int64), starts)
+
+
+def _diagonal(model: mujoco.MjModel, body: int, kind: str, given: NDArray[np.float64] | None) -> NDArray[np.float64]:
+    """Damping that a model states (6,); what it does not is zero."""
+    if given is None:
+        return np.zeros(6)
+    if len(given) != 6 or not (given >= 0.0).all() or not np.isfinite(given).all():
+        raise ModelError(
+            f"the {kind} damping of body '{body_name(model, body)}' is {given.tolist()}; it must be 6 numbers of at least 0: "
+            "surge, sway, heave, roll, pitch, yaw (Fossen's X_u, X_uu have the other sign)"
+        )
+    return given
 
 
 def _quadratic(

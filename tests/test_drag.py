@@ -100,3 +100,61 @@ def test_a_body_at_rest_in_a_current_is_pushed_along():
 def test_impossible_drag_is_told(field, value):
     with pytest.raises(ModelError, match=f"drag {field} is .*; it must be a finite number of at least 0"):
         Drag(**{field: value})
+
+
+ROV = """<mujoco><option timestep="0.01" gravity="0 0 -9.81"/><custom>
+<numeric name="added_mass:rov" data="6.36 7.12 18.68 0.189 0.135 0.222"/>
+<numeric name="linear_damping:rov" data="13.7 0 33 0 0.8 0"/>
+<numeric name="quadratic_damping:rov" data="141 217 190 1.19 0.47 1.5"/></custom>
+<worldbody><body name="rov" pos="0 0 -9"><freejoint/><inertial pos="0 0 -.01" mass="13.5" diaginertia="0.26 0.23 0.37"/>
+<geom type="ellipsoid" size="{} {} {}"/></body></worldbody></mujoco>"""
+
+
+def rov():
+    """The BlueROV2 Heavy by its parameters, as an ellipsoid of its volume 0.0134 m^3."""
+    a = (0.0134 / (4 / 3 * np.pi)) ** (1 / 3)
+    return mujoco.MjModel.from_xml_string(ROV.format(1.5 * a, a, a / 1.5))
+
+
+@pytest.mark.parametrize(
+    ("density", "push", "axis", "speed"),
+    # P18: von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898: sinks with 0.981 N in fresh water, rises with 2.305 N in
+    # sea water; surge with 10, 40, 100 N
+    [(1000, 0, 2, -0.0259), (1025, 0, 2, 0.0534), (1000, 10, 0, 0.222), (1000, 40, 0, 0.486), (1000, 100, 0, 0.795)],
+)
+def test_the_bluerov2_heavy_reaches_its_terminal_speeds(density, push, axis, speed):
+    model = rov()
+    data = mujoco.MjData(model)
+    with Buoyancy(model, Water(density=density)).installed():
+        while data.time < 20.0:
+            # held level, as its autopilot does
+            data.qvel[3:] = 0.0
+            data.qpos[3:7] = [1, 0, 0, 0]
+            data.xfrc_applied[1, 0] = push
+            mujoco.mj_step(model, data)
+    assert data.qvel[axis] == pytest.approx(speed, rel=1e-2)
+
+
+def test_what_is_stated_replaces_the_estimate_of_that_body():
+    damping = estimated(Drag(), rov(), displacing_hulls(rov()), 1000.0)
+    assert damping.linear[0].tolist() == [13.7, 0, 33, 0, 0.8, 0]
+    assert damping.quadratic[0].tolist() == [141, 217, 190, 1.19, 0.47, 1.5]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "message"),
+    [
+        ('data="13.7 0 33 0 0.8 0"', 'data="13.7 0 33"', "the linear damping of body 'rov' is .* it must be 6 numbers"),
+        ('data="141 ', 'data="-141 ', "the quadratic damping of body 'rov' is .*X_uu have the other sign"),
+        (
+            "linear_damping:rov",
+            "linear_damping:auv",
+            "linear damping is stated for body 'auv', which has no hull .*possible: rov",
+        ),
+    ],
+)
+def test_damping_that_makes_no_sense_is_told(before, after, message):
+    a = 0.15
+    model = mujoco.MjModel.from_xml_string(ROV.format(a, a, a).replace(before, after))
+    with pytest.raises(ModelError, match=message):
+        Buoyancy(model)
