@@ -113,8 +113,8 @@ def _diagonal(model: mujoco.MjModel, body: int, kind: str, given: NDArray[np.flo
         return np.zeros(6)
     if len(given) != 6 or not (given >= 0.0).all() or not np.isfinite(given).all():
         raise ModelError(
-            f"the {kind} damping of body '{body_name(model, body)}' is {given.tolist()}; it must be 6 numbers of at least 0: "
-            "surge, sway, heave, roll, pitch, yaw (Fossen's X_u, X_uu have the other sign)"
+            f"the {kind} damping of body '{body_name(model, body)}' is {given.tolist()}; it must be 6 numbers of at least "
+            "0: surge, sway, heave, roll, pitch, yaw (Fossen's X_u, X_uu have the other sign)"
         )
     return given
 

@@ -63,7 +63,11 @@ def renderable(found: Inspection) -> Group:
             )
             for i, name in enumerate(section.header or ("",) * len(section.rows[0])):
                 table.add_column(
-                    name, justify="right" if _numeric(section.rows, i) else "left", no_wrap=i == 0, overflow="fold"
+                    name,
+                    justify="right" if _numeric(section.rows, i) else "left",
+                    no_wrap=i == 0,
+                    overflow="fold",
+                    min_width=_word(section.rows, i),
                 )
             for row in section.rows:
                 table.add_row(*row)
@@ -324,6 +328,11 @@ def _numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
     """Whether a column holds numbers alone."""
     cells = [row[column].replace(",", "") for row in rows]
     return all(cell in ("", "-") or cell.lstrip("+-").replace(".", "").replace("e-", "").isdigit() for cell in cells)
+
+
+def _word(rows: Sequence[Sequence[str]], column: int) -> int:
+    """Length of the longest word of a column, that it be not broken; of monsters a part."""
+    return min(14, max(len(word) for row in rows for word in [*row[column].split(), ""]))
 
 
 def _row(cells: Sequence[str]) -> str:
