@@ -153,7 +153,7 @@ def test_a_vehicle_is_found_beside_its_scene(folder, monkeypatch, tmp_path_facto
 def test_a_missing_vehicle_is_told(folder):
     with pytest.raises(
         ModelError,
-        match=r"there is no vehicle 'bax.xml', neither a file nor one that ships; possible: bluerov2_heavy, hourglass",
+        match=r"there is no vehicle 'bax.xml', neither a file nor one that ships; possible: bluerov2_heavy",
     ):
         Simulation(read_scene(folder / "scene.toml", ["vehicle=bax.xml"]))
 
