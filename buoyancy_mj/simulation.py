@@ -224,10 +224,12 @@ class Simulation:
                 f"the vehicle weighs {self.mass:.4g} kg and would displace {self.displacement:.4g} kg of water; check the "
                 "scale of its meshes (a mesh drawn in millimetres wants scale='0.001 0.001 0.001')"
             )
-        if self.model.opt.density > 0.0 and self.scene.drag is not None:
+        density, viscosity = self.model.opt.density, self.model.opt.viscosity
+        if (density > 0.0 or viscosity > 0.0) and self.scene.drag is not None:
+            option = f"density='{density:g}'" if density > 0.0 else f"viscosity='{viscosity:g}'"
             warnings.warn(
-                f"the vehicle sets <option density='{self.model.opt.density:g}'>: MuJoCo's own fluid drag acts as well "
-                "as ours; leave one out (drag = false in the scene)",
+                f"the vehicle sets <option {option}>: MuJoCo's own fluid drag acts as well as ours; leave one out (drag = "
+                "false in the scene)",
                 BuoyancyWarning,
                 stacklevel=3,
             )

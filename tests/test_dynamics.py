@@ -251,3 +251,12 @@ def test_a_simulation_is_the_same_with_and_without_its_frames():
         list(simulation.frames())
         ends.append(simulation.data.qpos.copy())
     assert np.array_equal(*ends)
+
+
+def test_adrift_the_auv_takes_on_the_current():
+    simulation = Simulation(read_scene(catalog.scenes()["auv_current"]))
+    places = np.array([(frame.time, *frame.centre_of_mass) for frame in simulation.frames()])
+    # over the last ten periods of the wave
+    late = places[places[:, 0] >= 27.0 - 1e-9]
+    assert (late[-1, 1] - late[0, 1]) / 3.0 == pytest.approx(0.25, rel=0.05)
+    assert abs(late[-1, 2] - late[0, 2]) < 0.1

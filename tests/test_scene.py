@@ -135,7 +135,8 @@ def test_a_file_that_is_no_toml_is_told(folder):
 
 def test_an_unknown_scene_is_told_with_the_nearest():
     with pytest.raises(
-        SceneError, match=r"there is no scene 'auv_wave', .*; did you mean 'auv_waves'\? possible: auv_drop_still"
+        SceneError,
+        match=r"there is no scene 'auv_wave', .*; did you mean 'auv_waves'\? possible: auv_current, auv_drop_still",
     ):
         catalog.scene_path("auv_wave")
     with pytest.raises(SceneError, match="scene '/' is a folder"):
@@ -306,9 +307,10 @@ def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
         simulation_of(folder, xml)
 
 
-def test_mujocos_own_fluid_is_told_as_double_drag(folder):
-    xml = BOX.format(joint="", more="", rest="<option density='1000'/>")
-    with pytest.warns(BuoyancyWarning, match=r"<option density='1000'>: MuJoCo's own fluid drag acts as well as ours"):
+@pytest.mark.parametrize("option", ["density='1000'", "viscosity='0.001'"])
+def test_mujocos_own_fluid_is_told_as_double_drag(folder, option):
+    xml = BOX.format(joint="", more="", rest=f"<option {option}/>")
+    with pytest.warns(BuoyancyWarning, match=rf"<option {option}>: MuJoCo's own fluid drag acts as well as ours"):
         simulation_of(folder, xml)
 
 
