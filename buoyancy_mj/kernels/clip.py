@@ -29,7 +29,7 @@ from buoyancy_mj.kernels.waves import bend, doublings, elevation
 VOLUME, CENTROID, WETTED_AREA, WATERPLANE_AREA, COLUMNS = 0, slice(1, 4), 4, 5, 6
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
     """Of d n_z dA over one wholly wet triangle, whose signed area seen from above is a: plain, by x y z, and by d."""
     d = d0 + d1 + d2
@@ -43,7 +43,7 @@ def _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2):
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
     """The wet part of a triangle that the surface cuts, by the depths w of its corners.
 
@@ -71,26 +71,26 @@ def cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
     return (v + u, mx + nx, my + ny, mz + nz, q + r), 1.0 - s * t, (px, py, pz), (qx, qy, qz)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _turned(r, x, y, z):
     """A vector of a frame, turned by the row-major rotation r (9,)."""
     return r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def placed(origin, r, x, y, z):
     """A point of a frame, in the world."""
     tx, ty, tz = _turned(r, x, y, z)
     return origin[0] + tx, origin[1] + ty, origin[2] + tz
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _vertical(m, k, r):
     """Three numbers of a row of moments, along the world's vertical."""
     return m[k] * r[6] + m[k + 1] * r[7] + m[k + 2] * r[8]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _approach(waves, origin, r, cx, cy, cz, time, swell):
     """Bring the waves to a hull with its middle at c, in its own frame.
 
@@ -115,7 +115,7 @@ def _approach(waves, origin, r, cx, cy, cz, time, swell):
     return eta, g0, g1, g2, curvature, steepest
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _add_rest(vertices, first, last, c0, c1, c2, swell, waves, doubled, depths):
     """Add to depths under the plane, of vertices from `first` up to `last`, the rest of the elevation."""
     for w in range(waves):
@@ -143,7 +143,7 @@ SLIM = 1e-3
 """Square of the ends' distance, over that of their distances from the middle, for which one point along a cut is enough."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, panels, doubled):
     """Of the rest e over the triangle from the middle of the hull to a cut p q, all seen from above.
 
@@ -173,7 +173,7 @@ def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, panels, doubled):
     return whole * i0, whole * ix, whole * iy, whole * iz
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _walk(
     vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, middle, depths, swell
 ):  # fmt: skip
@@ -280,7 +280,7 @@ def _walk(
     return i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q, -p, area
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def is_rotation(r):
     """Whether a matrix (3, 3) turns, to one part in a million, and neither stretches nor mirrors."""
     for i in range(3):
@@ -294,7 +294,7 @@ def is_rotation(r):
     return r[0, 0] * x + r[0, 1] * y + r[0, 2] * z > 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def submerge_hulls(
     vertices,  # (v, 3) of all hulls, in the frame of each; leaf by leaf, so that leaves share none
     faces,  # (f, 3) into vertices, in the order of the leaves

@@ -11,7 +11,7 @@ from numba import njit
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _to_body(r, arm, out):
     """The matrix (6, 6) from MuJoCo's velocities (rotation, translation `arm` off) to translation, rotation along r."""
     for i in range(3):
@@ -22,13 +22,13 @@ def _to_body(r, arm, out):
         out[3 + i, 3:6] = 0.0
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _share(centres, b, volume):
     """The part of a body's volume that is wet."""
     return min(centres[b, 0] / volume, 1.0)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_inertia(
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     bodies,  # (n,) bodies that have added mass
@@ -82,7 +82,7 @@ def add_inertia(
     return added
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_reaction(
     centres,  # likewise
     bodies,
@@ -166,7 +166,7 @@ def add_reaction(
         out[b, 5] += x * fy - y * fx - wet * (r[6] * f[3] + r[7] * f[4] + r[8] * f[5])
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _along(r, x):
     """A vector of the world along the axes of r."""
     return (
@@ -176,7 +176,7 @@ def _along(r, x):
     )
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _product(matrix, i, x):
     """Row i of a matrix (36,) times a vector (6,)."""
     total = 0.0

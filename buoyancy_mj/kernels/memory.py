@@ -53,55 +53,55 @@ def give(typing, address):
     return types.int64(types.int64), code
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def word(address):
     """The 64-bit word at an address."""
     return carray(pointer(address), (1,), np.int64)[0]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def number(address):
     """The double at an address."""
     return carray(pointer(address), (1,), np.float64)[0]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def doubles(address, rows, columns):
     """The doubles (rows, columns) at an address."""
     return carray(pointer(address), (rows, columns), np.float64)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def int32s(address, rows):
     """The 32-bit integers (rows,) at an address."""
     return carray(pointer(address), (rows,), np.int32)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def grid(table, k):
     """The k-th array of a table, of two dimensions."""
     return carray(pointer(word(table + 24 * k)), (word(table + 24 * k + 8), word(table + 24 * k + 16)), np.float64)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def row(table, k):
     """The k-th array of a table, of doubles, of one dimension."""
     return carray(pointer(word(table + 24 * k)), (word(table + 24 * k + 8),), np.float64)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def words(table, k):
     """The k-th array of a table, of words."""
     return carray(pointer(word(table + 24 * k)), (word(table + 24 * k + 8),), np.int64)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def spans(table, k):
     """The k-th array of a table, of words (n, 5)."""
     return carray(pointer(word(table + 24 * k)), (word(table + 24 * k + 8), 5), np.int64)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def corners(table, k):
     """The k-th array of a table, of corners of faces (n, 3)."""
     return carray(pointer(word(table + 24 * k)), (word(table + 24 * k + 8), 3), np.uint32)

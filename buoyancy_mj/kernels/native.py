@@ -69,7 +69,7 @@ NO_GRAVITY, PGS = 1 << 7, 0
 # what acts
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _evaluate(model, data, water, scratch, record):
     """Evaluate the loads, leave them in the record, add them to the engine's passive forces.
 
@@ -206,7 +206,7 @@ def _evaluate(model, data, water, scratch, record):
     return 0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _add_mass(model, data, water, record, time):
     """Add the added mass to the engine's mass matrix, once in each pass, and the rest of its reaction to the total."""
     offsets, links = words(water, Water.offsets), words(water, Water.links)
@@ -292,7 +292,7 @@ def _add_mass(model, data, water, record, time):
         left[:] = mass
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _free_scratch(water):
     """Scratch that no other thread works in, from the pool of the water."""
     pool = words(water, Water.pool)
@@ -314,7 +314,7 @@ def act(model, data, water, record):
 # what the engine calls: small, so that it is ready without compiling what is above
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def act_or_fail(model, data, water, record):
     """Act, and tell the engine what fails."""
     links = words(water, Water.links)

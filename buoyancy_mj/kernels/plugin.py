@@ -7,13 +7,13 @@ from buoyancy_mj.kernels.memory import call, grid, pointer, word, words
 from buoyancy_mj.kernels.native import Context, Id, Offset, Record, Water, act_or_fail
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _slot(data, instance, context):
     """Address of the word that the engine keeps for an instance in its data."""
     return word(data + word(context + 8 * Context.plugin_data)) + 8 * instance
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _resolved(model, data, instance, context):
     """Let Python find the water of a model and put a record of it into the data; tells the engine what fails."""
     text = call(word(context + 8 * Context.resolve), model, data, instance, 0)
@@ -75,7 +75,7 @@ def compute(model, data, instance, capability, context):
     act_or_fail(model, data, words(record, Record.ids)[Id.water], record)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _sizes(model, record):
     """A sum over the bits of the sizes of all geoms, which another size changes."""
     offsets = words(words(record, Record.ids)[Id.water], Water.offsets)

@@ -34,7 +34,7 @@ _RULE = (
 """Barycentric coordinates of the first and the second corner, and weights."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _mean(p, q, o, waves, time, dynamic, most):
     """Means over a triangle of the pressure head, and of it times place, from the still level."""
     longest = max(_length(p, q), _length(q, o), _length(o, p))
@@ -64,17 +64,17 @@ def _mean(p, q, o, waves, time, dynamic, most):
     return m / (n * n), mx / (n * n), my / (n * n), mz / (n * n)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _length(p, q):
     return math.sqrt((p[0] - q[0]) ** 2 + (p[1] - q[1]) ** 2 + (p[2] - q[2]) ** 2)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _between(p, q, share):
     return p[0] + share * (q[0] - p[0]), p[1] + share * (q[1] - p[1]), p[2] + share * (q[2] - p[2])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _triangle(p, q, o, dp, dq, do, waves, time, dynamic, most):
     """`_mean` of the wet part of a triangle with depths at its corners, times the part that is wet."""
     wp, wq, wo = dp > 0.0, dq > 0.0, do > 0.0
@@ -96,14 +96,14 @@ def _triangle(p, q, o, dp, dq, do, waves, time, dynamic, most):
     return f * one[0] + g * two[0], f * one[1] + g * two[1], f * one[2] + g * two[2], f * one[3] + g * two[3]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _head_at(b, s, x, y, z, origin, r, level, waves, time, dynamic):
     """Head at a place of a frame: steps x, y, z of size s from b."""
     wx, wy, wz = placed(origin, r, b[0] + s * x, b[1] + s * y, b[2] + s * z)
     return head(waves, wx, wy, wz - level, time, dynamic)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _node(m, b, size, origin, r, level, waves, time, dynamic):
     """Force and torque of the head over a node with moments m about b, in its frame and about its origin."""
     s = size / math.sqrt(3.0)
@@ -137,7 +137,7 @@ def _node(m, b, size, origin, r, level, waves, time, dynamic):
     return f0, f1, f2, t0 + b[1] * f2 - b[2] * f1, t1 + b[2] * f0 - b[0] * f2, t2 + b[0] * f1 - b[1] * f0
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _force(m, c, p, g0, g1, g2, h00, h11, h22, h01, h02, h12):
     """Component c of the integral of a quadratic head over the area."""
     return (
@@ -146,7 +146,7 @@ def _force(m, c, p, g0, g1, g2, h00, h11, h22, h01, h02, h12):
     )  # fmt: skip
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _lever(m, i, c, p, g0, g1, g2):
     """Integral of a linear head times coordinate i over component c of the area."""
     # rows of second moments: xx yy zz xy xz yz
@@ -156,7 +156,7 @@ def _lever(m, i, c, p, g0, g1, g2):
     return p * m[3 + 3 * i + c] + g0 * m[x + c] + g1 * m[y + c] + g2 * m[z + c]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def press_hulls(
     vertices,  # as for `clip.submerge_hulls`
     faces,
@@ -232,7 +232,7 @@ def press_hulls(
         out[h, 3], out[h, 4], out[h, 5] = -(tx + ux), -(ty + uy), -(tz + uz)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _area(r, a):
     """A vector of a frame, in the world."""
     return (

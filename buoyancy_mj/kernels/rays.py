@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _left(u, v, i, j, x, y):
     """Whether (x, y) lies left of the edge from i to j; its two faces never agree, so no ray slips between them."""
     if i < j:
@@ -14,7 +14,7 @@ def _left(u, v, i, j, x, y):
     return not (u[i] - u[j]) * (y - v[j]) - (v[i] - v[j]) * (x - u[j]) >= 0.0
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _covers(u, v, face, x, y):
     """1 where a face that winds left, seen from above, covers (x, y), -1 where it winds right, else 0."""
     left = _left(u, v, face[0], face[1], x, y)
@@ -23,7 +23,7 @@ def _covers(u, v, face, x, y):
     return 1 if left else -1
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _height(x, y, z, face, px, py):
     """Height of a face's plane over (px, py), held within the face."""
     i, j, k = face[0], face[1], face[2]
@@ -36,7 +36,7 @@ def _height(x, y, z, face, px, py):
     return min(max(z[i] + s * (z[j] - z[i]) + t * (z[k] - z[i]), low), high)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _cells(a, b, c, low, step, count):
     """First and last grid line whose centre lies between the extremes of three coordinates."""
     first = int(math.ceil((min(a, b, c) - low) / step - 0.5))
@@ -44,7 +44,7 @@ def _cells(a, b, c, low, step, count):
     return max(first, 0), min(last, count - 1)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def silhouette(u, v, faces, low, step, grid):
     """Mark the cells of `grid` (n, m) whose centres low + (i + 1/2) step the triangles (u, v) cover."""
     for f in range(faces.shape[0]):
@@ -58,7 +58,7 @@ def silhouette(u, v, faces, low, step, grid):
                     grid[p, q] = _covers(u, v, faces[f], x, y) != 0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def misenclosed(vertices, faces, count):
     """Volumes enclosed more than once and less than never, by count * count vertical rays.
 

@@ -5,7 +5,7 @@ from numba import njit
 from buoyancy_mj.kernels.waves import elevation
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def place(
     vertices,  # (v, 3) in the frame of the hull
     order,  # (n,) which of them, one after the other
@@ -30,7 +30,7 @@ def place(
     return order.shape[0]
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def sections(
     points,  # (v, 3) in axes u, v, s, right-handed
     faces,  # (f, 3)

@@ -21,7 +21,7 @@ MOMENTS = 31
 """Numbers in a row of moments: 3 + 9 + 18 + 1."""
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def build(corners, leaf, order, spans):
     """Sort triangles into a tree: the sides of what is thin apart, else by halves along the widest side of their middles.
 
@@ -85,7 +85,7 @@ def build(corners, leaf, order, spans):
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _faces_along(corners, k):
     """Whether the normal of a triangle (3, 3) points along an axis rather than against it."""
     p, q = (k + 1) % 3, (k + 2) % 3
@@ -93,7 +93,7 @@ def _faces_along(corners, k):
     return across > (corners[1, q] - corners[0, q]) * (corners[2, p] - corners[0, p])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def spread(faces, spans, vertices, picked):
     """Give each leaf vertices of its own.
 
@@ -126,7 +126,7 @@ def spread(faces, spans, vertices, picked):
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def measure(corners, spans, boxes, moments):
     """Boxes (nodes, 6), their middles and half sides, and moments (nodes, 31) of triangles (n, 3, 3) in the tree's order."""
     moments[:, :] = 0.0

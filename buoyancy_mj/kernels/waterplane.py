@@ -14,7 +14,7 @@ from buoyancy_mj.kernels.clip import cut, placed
 AREA, FIRST, SECOND, EXTENTS, COLUMNS = 0, slice(1, 3), slice(3, 6), slice(6, 10), 10
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def waterplanes(
     vertices,  # as for `clip.submerge_hulls`
     faces,

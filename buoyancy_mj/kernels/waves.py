@@ -8,7 +8,7 @@ import math
 from numba import njit
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def elevation(waves, x, y, time):
     """Sum of the rows' elevations [m] above the still level at one horizontal point."""
     total = 0.0
@@ -17,7 +17,7 @@ def elevation(waves, x, y, time):
     return total
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def head(waves, x, y, z, time, dynamic):
     """Pressure over rho g [m] at height z over the still level: the depth, or with `dynamic` that of linear waves.
 
@@ -53,13 +53,13 @@ _S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17 = ((-1) ** n / math.factorial(2 * n +
 _C2, _C4, _C6, _C8, _C10, _C12, _C14, _C16, _C18 = ((-1) ** n / math.factorial(2 * n) for n in range(1, 10))
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def doublings(angle):
     """How often angles up to this one must be halved for `bend`; 3 for by no means often enough."""
     return 0 if angle <= SHORT else 1 if angle <= 2.0 * SHORT else 2 if angle <= 4.0 * SHORT else 3
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def bend(angle, doubled):
     """Sine less angle, and cosine less 1, to 1e-13, by series that several angles take at once in one instruction."""
     if doubled == 3:
@@ -78,14 +78,14 @@ def bend(angle, doubled):
     return sine, cosine
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def elevations(waves, x, y, time, out):
     """`elevation` at many points, written to `out`."""
     for i in range(x.shape[0]):
         out[i] = elevation(waves, x[i], y[i], time)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_velocity(waves, x, y, z, time, out):
     """Add the rows' orbital velocity [m/s] at height z above the still level to `out` (3,).
 
@@ -111,7 +111,7 @@ def add_velocity(waves, x, y, z, time, out):
         out[2] += amplitude * omega * decay * (1.0 - echo) * math.sin(angle)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_acceleration(waves, x, y, z, time, out):
     """Add the rows' orbital acceleration [m/s^2], at one place, to `out` (3,): the rate of `add_velocity` in time."""
     z = min(z, 0.0)
@@ -132,7 +132,7 @@ def add_acceleration(waves, x, y, z, time, out):
         out[2] -= amplitude * omega * omega * decay * (1.0 - echo) * math.cos(angle)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def velocities(waves, points, level, time, out):
     """`add_velocity` at many points (n, 3), added to `out` (n, 3)."""
     for i in range(points.shape[0]):

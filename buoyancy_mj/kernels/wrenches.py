@@ -8,7 +8,7 @@ from numba import njit
 from buoyancy_mj.kernels.waves import add_velocity
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_buoyancy(wet, bodies, weight, xipos, out):
     """Add to rows of `out` (nbody, 6) the force `weight` [N/m^3] times volume upward at each hull's centroid.
 
@@ -24,7 +24,7 @@ def add_buoyancy(wet, bodies, weight, xipos, out):
         out[b, 4] -= (wet[h, 1] - xipos[b, 0]) * force
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_wave_pressure(heads, wet, owners, frames, positions, weight, xipos, out):
     """Add to rows of `out` (nbody, 6) what the pressure `weight` [N/m^3] times `heads` (h, 6) has beyond buoyancy.
 
@@ -46,7 +46,7 @@ def add_wave_pressure(heads, wet, owners, frames, positions, weight, xipos, out)
             out[b, 4] += (wet[h, 1] - xipos[b, 0]) * lift
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def add_drag(
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     bodies,  # (n,) bodies that have drag
@@ -122,7 +122,7 @@ def add_drag(
         out[b, 5] += tz + arm[0] * fy - arm[1] * fx
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _rigid_body(members, body_mass, body_inertia, xipos, ximat, r):
     """Mass of bodies that move as one, and what they oppose to a torque about each axis of the frame r (9,).
 
@@ -155,14 +155,14 @@ def _rigid_body(members, body_mass, body_inertia, xipos, ximat, r):
     return mass, (i0, i1, i2)
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True, error_model="numpy", inline="always")
 def _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, x, y, z):
     """The determinant over the cofactors' quadratic form along an axis; 0 where there is no inertia."""
     form = cxx * x * x + cyy * y * y + czz * z * z + 2.0 * (cxy * x * y + cxz * x * z + cyz * y * z)
     return determinant / form if form > 0.0 else 0.0
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def merge(wet, owners, out):
     """Volume and centroid of the hulls of each owner, rows of `out` (n, 4); the centroid is NaN where all is dry."""
     out[:, :] = 0.0
@@ -178,7 +178,7 @@ def merge(wet, owners, out):
             out[n, c] = out[n, c] / out[n, 0] if out[n, 0] != 0.0 else math.nan
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def project(
     wrench,  # (nbody, 6) force and torque about xipos, world frame
     bodies,  # (n,) those that have one
