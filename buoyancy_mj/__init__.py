@@ -5,6 +5,8 @@ from buoyancy_mj.ballast import Placed as Placed
 from buoyancy_mj.ballast import ballast as ballast
 from buoyancy_mj.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.convex_hull import ConvexHull as ConvexHull
+from buoyancy_mj.currents import CurrentProfile as CurrentProfile
+from buoyancy_mj.currents import CurrentSeries as CurrentSeries
 from buoyancy_mj.drag import Drag as Drag
 from buoyancy_mj.equilibrium import Equilibrium as Equilibrium
 from buoyancy_mj.equilibrium import equilibrium as equilibrium
@@ -37,11 +39,13 @@ from buoyancy_mj.righting import righting_arm as righting_arm
 from buoyancy_mj.scene import Scene as Scene
 from buoyancy_mj.scene import Start as Start
 from buoyancy_mj.scene import read_scene as read_scene
+from buoyancy_mj.seas import JonswapSea as JonswapSea
+from buoyancy_mj.seas import PiersonMoskowitzSea as PiersonMoskowitzSea
 from buoyancy_mj.sections import Sections as Sections
 from buoyancy_mj.simulation import Simulation as Simulation
 from buoyancy_mj.submersion import Submersion as Submersion
 from buoyancy_mj.submersion import submerge as submerge
-from buoyancy_mj.water import LevelOscillation as LevelOscillation
-from buoyancy_mj.water import RegularWave as RegularWave
 from buoyancy_mj.water import Water as Water
-from buoyancy_mj.water import wavenumber as wavenumber
+from buoyancy_mj.waves import LevelOscillation as LevelOscillation
+from buoyancy_mj.waves import RegularWave as RegularWave
+from buoyancy_mj.waves import wavenumber as wavenumber

@@ -58,7 +58,7 @@ class Acting:
         """The waves, see `kernels.waves`."""
         return self.water.rows
 
-    @functools.cached_property
+    @property
     def current(self) -> NDArray[np.float64]:
-        """(3,) [m/s]."""
-        return np.array(self.water.current, float)
+        """The current, see `kernels.currents`."""
+        return self.water.current_rows

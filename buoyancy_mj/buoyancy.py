@@ -3,6 +3,7 @@
 import contextlib
 import functools
 import threading
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 
 import mujoco
@@ -13,9 +14,10 @@ from buoyancy_mj import callbacks, passes
 from buoyancy_mj.acting import Acting
 from buoyancy_mj.added_mass import added_masses
 from buoyancy_mj.drag import Drag, estimated
-from buoyancy_mj.errors import EngineError, MethodError, ModelError, choices
+from buoyancy_mj.errors import BuoyancyWarning, EngineError, MethodError, ModelError, choices
 from buoyancy_mj.exact import Exact
 from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.hull import Hull
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.kernels.native import Pressure
 from buoyancy_mj.loads import Loads, Portion
@@ -94,6 +96,7 @@ class Buoyancy:
             turns,
             [hull.fill for hull in self.hulls],
         )
+        _doubt(self.water, self.hulls)
         self.added_mass = added_masses(model, self.hulls, self.water.density, added_mass)
         """Added mass of those bodies that have one."""
         damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
@@ -275,6 +278,20 @@ def pressure_of(name: str, method: Method) -> Pressure:
     if kinds[name] != Pressure.archimedes and not isinstance(method, Exact):
         raise MethodError(f"pressure '{name}' needs the method 'exact', not '{method.name}', which knows volumes alone")
     return kinds[name]
+
+
+def _doubt(water: Water, hulls: Sequence[Hull]) -> None:
+    """Tell of waves that break, and refuse water in which a hull cannot lie."""
+    for doubt in water.doubts:
+        warnings.warn(f"the water has {doubt}", BuoyancyWarning, stacklevel=3)
+    shallowest = float(np.min(water.rows[:, 5], initial=np.inf))
+    for hull in hulls:
+        least = float(hull.mesh.extents.min())
+        if least > shallowest:
+            raise ModelError(
+                f"the waves run in water {shallowest:g} m deep, and hull '{hull.name}' is {least:.3g} m thick; "
+                "make the waves' depth greater"
+            )
 
 
 def _refuse_sleep(model: mujoco.MjModel) -> None:

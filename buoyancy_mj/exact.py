@@ -112,7 +112,9 @@ class PackedHulls:
         shares = np.repeat(fills, np.diff(firsts))[:, None]
         self._areas = np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)])
         self._waves = water.rows
-        self._depths, self._swell = np.empty(np.diff(starts).max()), np.empty((len(self._waves), 7))
+        leaves = self._spans[:, 4] == np.arange(len(self._spans)) + 1
+        most = int(np.diff(self._spans[leaves, 2:4]).max())
+        self._depths, self._swell = np.empty((5, most)), np.empty((len(self._waves), 7))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
 
@@ -177,7 +179,7 @@ class PackedHulls:
             self._waves,
             time,
             dynamic,
-            self._depths,
+            self._depths[0],
             rows,
         )
         return rows
@@ -199,7 +201,7 @@ class PackedHulls:
             rotations,
             about,
             self.water.level,
-            self._depths,
+            self._depths[0],
             rows,
         )
         return rows

@@ -146,7 +146,7 @@ def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str =
     """The scene that a table of plain values describes, see `read_scene`."""
     plain = dict(table)
     given: dict[str, Any] = {"text": text, "folder": folder}
-    given["water"] = water_from_table(plain.pop("water", {}), f"{where}: water")
+    given["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
     given["start"] = built(Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start")
     given["drag"] = drag_from_table(plain.pop("drag", True), f"{where}: drag")
     given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")

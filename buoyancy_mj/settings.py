@@ -4,19 +4,30 @@ import dataclasses
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from buoyancy_mj.currents import Current, CurrentProfile, CurrentSeries
 from buoyancy_mj.drag import Drag
 from buoyancy_mj.errors import BuoyancyError, MethodError, SceneError, WaterError, choices
 from buoyancy_mj.exact import Exact
 from buoyancy_mj.methods import METHODS, Method
+from buoyancy_mj.seas import JonswapSea, PiersonMoskowitzSea
 from buoyancy_mj.tables import built
-from buoyancy_mj.water import LevelOscillation, RegularWave, Water, Wave
+from buoyancy_mj.water import Water
+from buoyancy_mj.waves import LevelOscillation, RegularWave, Wave
 
-WAVES: Mapping[str, type[RegularWave] | type[LevelOscillation]] = {"regular": RegularWave, "level": LevelOscillation}
+WAVES: Mapping[str, type[Wave]] = {
+    "regular": RegularWave,
+    "jonswap": JonswapSea,
+    "pierson-moskowitz": PiersonMoskowitzSea,
+    "level": LevelOscillation,
+}
 """Kinds of waves."""
+CURRENTS: Mapping[str, type[CurrentProfile] | type[CurrentSeries]] = {"profile": CurrentProfile, "series": CurrentSeries}
+"""Kinds of currents that are not everywhere and always the same."""
 KEYS = ("density", "level", "waves", "current", "method", "pressure", "drag", "added_mass", "geoms", "hull", "fill")
 """What texts describe: the fields of `Water`, and the arguments of `Buoyancy`."""
 _CHOICES = KEYS[-3:]
@@ -48,8 +59,8 @@ class Settings:
 # from tables -------------------------------------------------------------------------------------------
 
 
-def water_from_table(value: Any, where: str) -> Water:
-    """The sea that a table describes; `where` names it in errors.
+def water_from_table(value: Any, where: str, folder: Path = Path()) -> Water:
+    """The sea that a table describes; `where` names it in errors, and paths in it start from `folder`.
 
     Raises:
         SceneError: an unknown key or kind of wave, or a value that makes no sense. So do the others here.
@@ -66,7 +77,27 @@ def water_from_table(value: Any, where: str) -> Water:
         if not isinstance(kind, str) or kind not in WAVES:
             raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
         waves.append(built(WAVES[kind], wave, place))
-    return built(Water, plain, where, waves=tuple(waves))
+    given: dict[str, Any] = {"waves": tuple(waves)}
+    if isinstance(plain.get("current"), dict):
+        given["current"] = current_from_table(plain.pop("current"), f"{where}.current", folder)
+    return built(Water, plain, where, **given)
+
+
+def current_from_table(value: Mapping[str, Any], where: str, folder: Path = Path()) -> CurrentProfile | CurrentSeries:
+    """A current by depth or by time; a series may stand in a `file`, see `CurrentSeries.read`."""
+    plain = dict(value)
+    kind = plain.pop("kind", None)
+    if not isinstance(kind, str) or kind not in CURRENTS:
+        raise SceneError(f"{where}: kind is {kind!r}; {choices(str(kind), CURRENTS)}, or a list of 3 numbers instead")
+    if kind == "series" and "file" in plain:
+        file = plain.pop("file")
+        if plain or not isinstance(file, str):
+            raise SceneError(f"{where}: a series has a file, a text, and nothing else, or times and velocities")
+        try:
+            return CurrentSeries.read(folder / file)
+        except WaterError as error:
+            raise SceneError(f"{where}: {error}") from error
+    return built(CURRENTS[kind], plain, where)
 
 
 def method_from_table(value: Any, where: str) -> Method:
@@ -101,7 +132,8 @@ def settings_from_texts(texts: Mapping[str, str], where: str) -> Settings:
     """What texts by the names of `KEYS` describe; empty ones, and missing ones, are defaults.
 
     A wave is its kind and its fields, 'regular amplitude=0.3 frequency=0.5', several stand between
-    semicolons; a method is its name and its options; drag is true, false, or its coefficients.
+    semicolons; a current is three numbers, or 'profile depths=[0,5] velocities=[[1,0,0],[0,0,0]]', or
+    'series ...'; a method is its name and its options; drag is true, false, or its coefficients.
 
     Raises:
         SceneError: a text that makes no sense; the message names its key.
@@ -109,7 +141,9 @@ def settings_from_texts(texts: Mapping[str, str], where: str) -> Settings:
     given = {key: text.strip() for key, text in texts.items() if text.strip()}
     sea: dict[str, Any] = {key: plain_value(given[key]) for key in ("density", "level") if key in given}
     if "current" in given:
-        sea["current"] = [plain_value(word) for word in given["current"].replace(",", " ").split()]
+        text = given["current"]
+        speeds = [plain_value(word) for word in text.replace(",", " ").split()]
+        sea["current"] = _words(text, f"{where}: current") if "=" in text else speeds
     if "waves" in given:
         sea["waves"] = [_words(wave, f"{where}: waves") for wave in given["waves"].split(";") if wave.strip()]
     drag = given.get("drag", "true")
@@ -131,7 +165,7 @@ def texts_from_settings(settings: Settings) -> dict[str, str]:
     """
     water, texts = settings.water, {}
     texts["density"], texts["level"] = repr(float(water.density)), repr(float(water.level))
-    texts["current"] = " ".join(repr(float(speed)) for speed in water.current)
+    texts["current"] = _current_text(water.current)
     assert isinstance(water.waves, Sequence)
     texts["waves"] = "; ".join(_wave_text(wave) for wave in water.waves)
     method = settings.method
@@ -164,11 +198,20 @@ def _words(text: str, where: str) -> dict[str, Any]:
     return ({"kind": kind} if kind else {}) | {key: plain_value(value) for key, value in pairs}
 
 
+def _current_text(current: Current) -> str:
+    """A current in words."""
+    for kind, cls in CURRENTS.items():
+        if isinstance(current, cls):
+            return " ".join([kind, *_fields(current)])
+    assert isinstance(current, tuple)
+    return " ".join(repr(float(speed)) for speed in current)
+
+
 def _wave_text(wave: Wave) -> str:
     """A wave in words, by whichever of its fields give it back to the last bit."""
     kinds = [kind for kind, cls in WAVES.items() if type(wave) is cls]
     if not kinds:
-        raise WaterError(f"{wave!r} cannot be written into a model; possible are RegularWave and LevelOscillation")
+        raise WaterError(f"{wave!r} cannot be written into a model; possible are {', '.join(WAVES)}")
     if isinstance(wave, RegularWave):
         others = {f.name: getattr(wave, f.name) for f in dataclasses.fields(wave) if f.name not in _SAME}
         for name in _SAME:

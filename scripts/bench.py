@@ -5,12 +5,13 @@
 Medians over repeats: a submersion by the public call against trimesh's capped slice, scipy's convex
 hull of the wet vertices, manifold3d's trim and, where it is installed (pip install '.[bench]'),
 Capytaine's immersed_part, on the same meshes and poses; the tree of moments against the plain way;
-a step of a scene with water against the same step without; batches on one thread and on two; the
-real-time factor of `auv_waves`; the time from a fresh interpreter to the first step; hydrostatics
-against Capytaine's, rest poses, righting arms and whole inspections.
+a step of a scene with water against the same step without; a sea of 64 waves against one; batches
+on one thread and on two; the real-time factor of `auv_waves`; the time from a fresh interpreter to
+the first step; hydrostatics against Capytaine's, rest poses, righting arms and whole inspections.
 """
 
 import argparse
+import dataclasses
 import json
 import statistics
 import subprocess
@@ -32,7 +33,9 @@ from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import (
+    JonswapSea,
     RegularWave,
+    Scene,
     Simulation,
     TriMesh,
     Water,
@@ -171,8 +174,12 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
 
 
 def scene_steps(name: str, *settings: str) -> dict[str, float]:
+    """`steps_of` a scene that ships."""
+    return steps_of(read_scene(catalog.scenes()[name], settings))
+
+
+def steps_of(scene: Scene) -> dict[str, float]:
     """Mean time of one step [s] over the whole of a scene, with its water (compiled) and without."""
-    scene = read_scene(catalog.scenes()[name], settings)
     times = {}
     for label, afloat in (("with", True), ("without", False)):
         best = np.inf
@@ -184,6 +191,22 @@ def scene_steps(name: str, *settings: str) -> dict[str, float]:
             mujoco.mj_step(model, data, steps)
             best = min(best, (time.perf_counter() - started) / steps)
         times[label] = best
+    return times
+
+
+def seas(components: int) -> dict[str, dict[str, float]]:
+    """Mean time that the water takes of a step [s], in one regular wave and in a sea of the same energy, by pressure."""
+    scene = read_scene(catalog.scenes()["auv_sea_state_2"], ("duration=10",))
+    times: dict[str, dict[str, float]] = {}
+    for pressure in ("archimedes", "froude-krylov"):
+        times[pressure] = {}
+        for label, wave in (
+            ("one wave", RegularWave(0.3 / np.sqrt(8.0), period=3.5)),
+            ("sea", JonswapSea(0.3, 3.5, components=components, spreading=10.0)),
+        ):
+            water = dataclasses.replace(scene.water, waves=wave)
+            step = steps_of(dataclasses.replace(scene, water=water, pressure=pressure))
+            times[pressure][label] = step["with"] - step["without"]
     return times
 
 
@@ -350,7 +373,7 @@ def flat(results: dict, prefix: str = "") -> dict[str, float]:
 
 def main() -> None:
     """Measure, print, save, compare."""
-    sections = ("submersion", "tree", "step", "batch", "real_time", "first_step", "statics")
+    sections = ("submersion", "tree", "step", "sea", "batch", "real_time", "first_step", "statics")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer sizes and repeats")
     parser.add_argument("--only", nargs="+", choices=sections, default=sections, help="measure these alone")
@@ -387,6 +410,13 @@ def main() -> None:
             console.print(
                 f"mean step of {name}: {step['with'] * 1e6:.1f} us with water, {step['without'] * 1e6:.1f} us without, "
                 f"{step['with'] / step['without']:.1f} x"
+            )
+    if "sea" in options.only:
+        results["sea"] = seas(64)
+        for name, row in results["sea"].items():
+            console.print(
+                f"water's part of a step of auv_sea_state_2, {name}: {row['one wave'] * 1e6:.1f} us in one wave, "
+                f"{row['sea'] * 1e6:.1f} us in 64, {row['sea'] / row['one wave']:.1f} x"
             )
     if "batch" in options.only:
         results["batch"] = {name: batches(name, 64) for name in ("auv_drop_still", "auv_waves")}

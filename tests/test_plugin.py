@@ -21,10 +21,12 @@ from buoyancy_mj import (
     Drag,
     EngineError,
     Exact,
+    JonswapSea,
     LevelOscillation,
     MeshError,
     MethodError,
     ModelError,
+    PiersonMoskowitzSea,
     RegularWave,
     Scene,
     Sections,
@@ -164,7 +166,7 @@ def test_the_water_of_an_unknown_instance_is_told():
         ({"density": "-1"}, "density is -1.0; it must be above 0"),
         ({"level": "nan"}, "level is nan"),
         ({"current": "1 2"}, r"current is \[1, 2\]; needed is a list of 3 numbers"),
-        ({"waves": "huge amplitude=1"}, "unknown kind 'huge'; possible: level, regular"),
+        ({"waves": "huge amplitude=1"}, "unknown kind 'huge'; possible: jonswap, level, pierson-moskowitz, regular"),
         ({"waves": "regular amplitude=1"}, "a regular wave got none; give exactly one of frequency"),
         ({"waves": "regular amplitude=1 frequency"}, "key=value pairs between blanks, not 'frequency'"),
         ({"waves": "regular height=1 frequency=1"}, "unknown key 'height'"),
@@ -208,6 +210,15 @@ WAVE = st.one_of(
     st.builds(RegularWave, st.floats(0.0, 2.0), wavelength=st.floats(0.1, 500.0)),
     st.builds(RegularWave, st.floats(0.0, 2.0), period=st.floats(0.1, 30.0), depth=st.just(7.0)),
     st.builds(LevelOscillation, st.floats(0.0, 2.0), st.floats(0.05, 5.0), st.floats(-4, 4)),
+    st.builds(
+        JonswapSea,
+        st.floats(0.0, 2.0),
+        st.floats(0.5, 30.0),
+        gamma=st.floats(1.0, 7.0),
+        seed=st.integers(0, 2**63 - 1),
+        spreading=st.sampled_from([np.inf, 4.5]),
+    ),
+    st.builds(PiersonMoskowitzSea, st.floats(0.1, 5.0), components=st.integers(1, 9)),
 )
 METHOD = st.sampled_from(
     [
@@ -245,7 +256,9 @@ def test_waves_and_methods_that_a_model_cannot_hold_are_refused():
     class Guess(Exact):
         pass
 
-    with pytest.raises(WaterError, match="cannot be written into a model; possible are RegularWave and LevelOscillation"):
+    with pytest.raises(
+        WaterError, match="cannot be written into a model; possible are regular, jonswap, pierson-moskowitz, level"
+    ):
         with_water(Water(waves=Swell()))
     with pytest.raises(MethodError, match="cannot be written into a model; possible are exact, convex_hull, sections"):
         with_water(method=Guess())

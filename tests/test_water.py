@@ -134,7 +134,10 @@ def test_depth_is_positive_in_the_water():
         (lambda: Water(density=math.nan), "density is nan; it must be a finite number"),
         (lambda: Water(level=math.inf), "level is inf; it must be a finite number"),
         (lambda: Water(density="salt"), "density is 'salt'; it must be a finite number"),
-        (lambda: Water(waves=(3,)), "3 is no wave; possible are RegularWave and LevelOscillation"),
+        (
+            lambda: Water(waves=(3,)),
+            "3 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and LevelOscillation",
+        ),
         (lambda: Water(current=(1.0, 2.0)), r"current is \(1.0, 2.0\); it must be three finite numbers"),
         (lambda: RegularWave(-0.1, period=1.0), "amplitude is -0.1; it must be at least 0"),
         (lambda: RegularWave(0.1, period=-1.0), "period is -1.0; it must be at least 1e-06"),
@@ -144,7 +147,10 @@ def test_depth_is_positive_in_the_water():
             lambda: RegularWave(2.0, period=3.0, depth=1.0),
             "amplitude is 2.0 m in water 1.0 m deep; the trough would lie below",
         ),
-        (lambda: Water(waves=5), "5 is no wave; possible are RegularWave and LevelOscillation"),
+        (
+            lambda: Water(waves=5),
+            "5 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and LevelOscillation",
+        ),
         (lambda: Water(current="abc"), "current is 'abc'; it must be three finite numbers"),
         (lambda: Water(level=1e308), r"level is 1e\+308; it must be at most 1e\+06"),
         (lambda: RegularWave(0.1, period=1.0, depth=0.0), "wave depth is 0.0; it must be at least 1e-06 m"),

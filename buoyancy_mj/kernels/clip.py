@@ -21,9 +21,11 @@ stand still and the vertical leans.
 
 import math
 
+import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels.waves import bend, doublings, elevation
+from buoyancy_mj.kernels import local
+from buoyancy_mj.kernels.waves import bend, doublings, swing
 
 # columns of one row of results
 VOLUME, CENTROID, WETTED_AREA, WATERPLANE_AREA, COLUMNS = 0, slice(1, 4), 4, 5, 6
@@ -91,33 +93,54 @@ def _vertical(m, k, r):
 
 
 @njit(cache=True, error_model="numpy")
-def _approach(waves, origin, r, cx, cy, cz, time, swell):
-    """Bring the waves to a hull with its middle at c, in its own frame.
+def _approach(waves, origin, r, middle, time, swell, flat):
+    """Bring the waves to a hull with its middle and half sides in `middle`, in its own frame.
 
     Rows of `swell` become A cos and A sin of the phase over the middle, the wave vector in the hull's
-    frame (3), and in the world's (2). Gives the elevation there over the still level, its gradient in
-    the hull's frame, a bound of its curvature, and the largest wave number.
+    frame (3), and in the world's (2); of those waves that the polynomial `flat` does not hold, see
+    `local`. It has what the others add, but for its plane. Gives the elevation over the middle, from
+    the still level, its gradient in the hull's frame, a bound of its curvature, how many waves are in
+    `swell`, and by how much the phase of any changes over the hull.
     """
-    eta = g0 = g1 = g2 = curvature = steepest = 0.0
-    x, y, _ = placed(origin, r, cx, cy, cz)
-    for w in range(waves.shape[0]):
+    eta = g0 = g1 = g2 = curvature = twist = steepest = hxx = hxy = hyy = 0.0
+    x, y, _ = placed(origin, r, middle[0], middle[1], middle[2])
+    radius = math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
+    many, near = waves.shape[0], 0
+    flat[:] = 0.0
+    for w in range(many):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
-        k = math.hypot(kx, ky)
+        k = math.sqrt(kx * kx + ky * ky)
         phase = kx * x + ky * y - waves[w, 3] * time + waves[w, 4]
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
+        bow = abs(amplitude) * k * k
+        curvature, twist, steepest = curvature + bow, twist + bow * k, max(steepest, k)
+        hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
+        if local.fits(amplitude, k * radius, radius, many):
+            local.add_series(flat, local.DEGREE, crest, slope, kx, ky)
+            continue
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
-        swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4] = crest, slope, k0, k1, k2
-        swell[w, 5], swell[w, 6] = kx, ky
+        swell[near, 0], swell[near, 1], swell[near, 2], swell[near, 3], swell[near, 4] = crest, slope, k0, k1, k2
+        swell[near, 5], swell[near, 6] = kx, ky
+        near += 1
         eta += crest
         g0, g1, g2 = g0 - slope * k0, g1 - slope * k1, g2 - slope * k2
-        curvature += abs(amplitude) * k * k
-        steepest = max(steepest, k)
-    return eta, g0, g1, g2, curvature, steepest
+    # coefficients of 1, y and x
+    one, sx, sy = flat[0], flat[local.DEGREE + 1], flat[1]
+    flat[0] = flat[1] = flat[local.DEGREE + 1] = 0.0
+    g0, g1, g2 = g0 + sx * r[0] + sy * r[3], g1 + sx * r[1] + sy * r[4], g2 + sx * r[2] + sy * r[5]
+    # that over the middle, and by how much it can differ elsewhere
+    over = math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius
+    return eta + one, g0, g1, g2, min(curvature, over), near, steepest * radius
 
 
 @njit(cache=True, error_model="numpy")
-def _add_rest(vertices, first, last, c0, c1, c2, swell, waves, doubled, depths):
+def _add_rest(vertices, first, last, c0, c1, c2, r, swell, waves, flat, smooth, doubled, depths, room):
     """Add to depths under the plane, of vertices from `first` up to `last`, the rest of the elevation."""
+    if smooth:
+        for n in range(first, last):
+            x, y, _ = _turned(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
+            room[0, n - first], room[1, n - first] = x, y
+        local.add_at_many(flat, room, last - first, depths)
     for w in range(waves):
         crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
         middle = k0 * c0 + k1 * c1 + k2 * c2
@@ -144,7 +167,7 @@ SLIM = 1e-3
 
 
 @njit(cache=True, error_model="numpy")
-def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, panels, doubled):
+def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, flat, smooth, ray, panels, doubled):
     """Of the rest e over the triangle from the middle of the hull to a cut p q, all seen from above.
 
     Gives the integrals of e, x e, y e and (plane + e / 2) e. The plane has the `height` over the
@@ -156,11 +179,13 @@ def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, panels, doubled):
     for n in range(1 if slim else 2):
         along, share = _ONE[0] if slim else _TWO[n]
         ex, ey = px + along * (qx - px), py + along * (qy - py)
+        if smooth:
+            local.along_ray(flat, ex, ey, ray)
         for panel in range(panels):
             for out, weight in _FOUR:
                 u = (panel + out) / panels
                 x, y = u * ex, u * ey
-                e = 0.0
+                e = local.on_ray(ray, u) if smooth else 0.0
                 for w in range(waves):
                     sine, cosine = bend(swell[w, 5] * x + swell[w, 6] * y, doubled)
                     e += swell[w, 0] * cosine - swell[w, 1] * sine
@@ -175,17 +200,18 @@ def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, panels, doubled):
 
 @njit(cache=True, error_model="numpy")
 def _walk(
-    vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, middle, depths, swell
+    vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, middle, scratch, swell
 ):  # fmt: skip
     """Volume, first moments about the origin, horizontal and wetted area under the nodes from `start` up to `end`.
 
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their moments.
     """
     v = lx = ly = lz = q = p = area = i0 = ix = iy = iz = 0.0
-    many = waves.shape[0]
+    depths = scratch[0]
     c0, c1, c2 = middle[0], middle[1], middle[2]
-    eta, s0, s1, s2, curvature, steepest = _approach(waves, origin, r, c0, c1, c2, time, swell)
-    reach = steepest * math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
+    flat, ray = np.empty(local.FLAT), np.empty(local.DEGREE + 1)
+    eta, s0, s1, s2, curvature, many, reach = _approach(waves, origin, r, middle, time, swell, flat)
+    wavy, smooth = waves.shape[0] > 0, many < waves.shape[0]
     doubled, panels = doublings(reach), min(max(1, math.ceil(reach / PANEL)), PANELS)
     # the plane, as the depth under it: d + g (x - c)
     g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
@@ -200,6 +226,11 @@ def _walk(
         plane = d + g0 * y0 + g1 * y1 + g2 * y2
         # the depth of the middle of the box, and how much less or more any point of it has
         depth, h0, h1, h2 = plane, g0, g1, g2
+        if smooth:
+            x, y, _ = _turned(r, y0, y1, y2)
+            e, sx, sy = local.with_gradient(flat, x, y)
+            depth += e
+            h0, h1, h2 = h0 + sx * r[0] + sy * r[3], h1 + sx * r[1] + sy * r[4], h2 + sx * r[2] + sy * r[5]
         for w in range(many):
             crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
             angle = k0 * y0 + k1 * y1 + k2 * y2
@@ -240,8 +271,8 @@ def _walk(
         still = d - (g0 * c0 + g1 * c1 + g2 * c2)
         for n in range(base, top):
             depths[n - base] = still + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
-        if many:
-            _add_rest(vertices, base, top, c0, c1, c2, swell, many, doubled, depths)
+        if wavy:
+            _add_rest(vertices, base, top, c0, c1, c2, r, swell, many, flat, smooth, doubled, depths, scratch[1:])
         for f in range(spans[i, 0], spans[i, 1]):
             j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
             w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]
@@ -252,7 +283,7 @@ def _walk(
             x1, y1, z1 = vertices[k, 0], vertices[k, 1], vertices[k, 2]
             x2, y2, z2 = vertices[o, 0], vertices[o, 1], vertices[o, 2]
             d0, d1, d2 = w0, w1, w2
-            if many:
+            if wavy:
                 d0 = still + g0 * x0 + g1 * y0 + g2 * z0
                 d1 = still + g0 * x1 + g1 * y1 + g2 * z1
                 d2 = still + g0 * x2 + g1 * y2 + g2 * z2
@@ -260,10 +291,10 @@ def _walk(
                 some, fraction = _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2), 1.0
             else:
                 some, fraction, one, other = cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2)
-                if many:
+                if wavy:
                     px, py, _ = _turned(r, one[0] - c0, one[1] - c1, one[2] - c2)
                     qx, qy, _ = _turned(r, other[0] - c0, other[1] - c1, other[2] - c2)
-                    rest = _waterplane(px, py, qx, qy, height, gx, gy, swell, many, panels, doubled)
+                    rest = _waterplane(px, py, qx, qy, height, gx, gy, swell, many, flat, smooth, ray, panels, doubled)
                     i0, ix, iy, iz = i0 + rest[0], ix + rest[1], iy + rest[2], iz + rest[3]
             v += some[0]
             lx += some[1]
@@ -310,23 +341,19 @@ def submerge_hulls(
     level,
     waves,  # (w, 6)
     time,
-    depths,  # scratch, as long as the most vertices of a hull
+    scratch,  # (5, ) as long as the most vertices of a leaf
     swell,  # (w, 7) scratch
     out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
 ):
     """The submersion of each hull; only hulls that the surface may cut cost more than a few operations."""
-    amplitude = steepness = 0.0
-    for i in range(waves.shape[0]):
-        amplitude += abs(waves[i, 0])
-        steepness += abs(waves[i, 0]) * math.hypot(waves[i, 1], waves[i, 2])
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
         # how deep the middle of its box lies, and how much shallower or deeper any point of it can be
         x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
-        depth = level + elevation(waves, x, y, time) - z
         ex, ey, ez = whole[h, 8], whole[h, 9], whole[h, 10]
-        reach = abs(r[6]) * ex + abs(r[7]) * ey + abs(r[8]) * ez
-        reach += min(2.0 * amplitude, steepness * math.sqrt(ex * ex + ey * ey + ez * ez))
+        eta, reach = swing(waves, x, y, time, math.sqrt(ex * ex + ey * ey + ez * ez))
+        depth = level + eta - z
+        reach += abs(r[6]) * ex + abs(r[7]) * ey + abs(r[8]) * ez
         if not math.isfinite(depth):
             out[h, :] = math.nan
             continue
@@ -340,7 +367,7 @@ def submerge_hulls(
             continue
         v, mx, my, mz, p, area = _walk(
             vertices, faces, areas, spans, boxes, moments, nodes[h], nodes[h + 1], origin, r, level, waves, time,
-            whole[h, 5:], depths, swell,
+            whole[h, 5:], scratch, swell,
         )  # fmt: skip
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of
         if v >= whole[h, 0]:

@@ -8,6 +8,7 @@ goes with the engine's accelerations stands in its mass matrix, so that it canno
 import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
 
 
@@ -102,7 +103,7 @@ def add_reaction(
     qvel,  # (nv,)
     level,
     waves,
-    current,
+    current,  # (n, 5)
     time,
     out,  # (nbody, 6)
 ):
@@ -127,8 +128,8 @@ def add_reaction(
             for k in range(6):
                 spin[k] += cdof_dot[i, k] * qvel[i]
             i = dof_parents[i]
-        water[:] = current
-        rush[:] = 0.0
+        set_current(current, level - centres[b, 3], time, water)
+        set_rate(current, time, rush)
         add_velocity(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, water)
         add_acceleration(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, rush)
         for i in range(6):

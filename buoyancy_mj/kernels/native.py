@@ -115,7 +115,7 @@ def _evaluate(model, data, water, scratch, record):
             sea[1],
             waves,
             time,
-            row(scratch, Scratch.depths),
+            grid(scratch, Scratch.depths),
             grid(scratch, Scratch.swell),
             wet,
         )
@@ -145,7 +145,7 @@ def _evaluate(model, data, water, scratch, record):
             waves,
             time,
             kind == Pressure.froude_krylov,
-            row(scratch, Scratch.depths),
+            grid(scratch, Scratch.depths)[0],
             heads,
         )
         pushed[:, :] = 0.0
@@ -177,7 +177,7 @@ def _evaluate(model, data, water, scratch, record):
             roots,
             sea[1],
             waves,
-            row(water, Water.current),
+            grid(water, Water.current),
             time,
             number(model + offsets[Offset.timestep]),
             drag,
@@ -245,7 +245,7 @@ def _add_mass(model, data, water, record, time):
         carray(pointer(word(data + offsets[Offset.qvel])), (nv,), np.float64),
         sea[1],
         grid(water, Water.waves),
-        row(water, Water.current),
+        grid(water, Water.current),
         time,
         reaction,
     )

@@ -7,10 +7,13 @@ rule of degree 5 (Radon 1948), in pieces no longer than `PIECE` over the largest
 
 import math
 
+import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels.clip import placed
-from buoyancy_mj.kernels.waves import elevation, head
+from buoyancy_mj.kernels.local import gather, head, surface
+from buoyancy_mj.kernels.waves import swing
 
 SMALL = 0.3
 """Half the diagonal of a node, times the wave number, for which its moments are enough: to SMALL^3 / 6 of the pressure."""
@@ -35,7 +38,7 @@ _RULE = (
 
 
 @njit(cache=True, error_model="numpy")
-def _mean(p, q, o, waves, time, dynamic, most):
+def _mean(p, q, o, sea, time, dynamic, most):
     """Means over a triangle of the pressure head, and of it times place, from the still level."""
     longest = max(_length(p, q), _length(q, o), _length(o, p))
     if most * longest <= TINY:
@@ -43,9 +46,9 @@ def _mean(p, q, o, waves, time, dynamic, most):
         ax, ay, az = 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2])
         bx, by, bz = 0.5 * (q[0] + o[0]), 0.5 * (q[1] + o[1]), 0.5 * (q[2] + o[2])
         cx, cy, cz = 0.5 * (o[0] + p[0]), 0.5 * (o[1] + p[1]), 0.5 * (o[2] + p[2])
-        a = head(waves, ax, ay, az, time, dynamic) / 3.0
-        b = head(waves, bx, by, bz, time, dynamic) / 3.0
-        c = head(waves, cx, cy, cz, time, dynamic) / 3.0
+        a = head(sea, ax, ay, az, time, dynamic) / 3.0
+        b = head(sea, bx, by, bz, time, dynamic) / 3.0
+        c = head(sea, cx, cy, cz, time, dynamic) / 3.0
         return a + b + c, a * ax + b * bx + c * cx, a * ay + b * by + c * cy, a * az + b * bz + c * cz
     n = min(max(1, math.ceil(most * longest / PIECE)), PIECES)
     m = mx = my = mz = 0.0
@@ -59,7 +62,7 @@ def _mean(p, q, o, waves, time, dynamic, most):
                         s, t = (i + 1 - first) / n, (j + 1 - second) / n
                     u = 1.0 - s - t
                     x, y, z = s * p[0] + t * q[0] + u * o[0], s * p[1] + t * q[1] + u * o[1], s * p[2] + t * q[2] + u * o[2]
-                    share = weight * head(waves, x, y, z, time, dynamic)
+                    share = weight * head(sea, x, y, z, time, dynamic)
                     m, mx, my, mz = m + share, mx + share * x, my + share * y, mz + share * z
     return m / (n * n), mx / (n * n), my / (n * n), mz / (n * n)
 
@@ -75,11 +78,11 @@ def _between(p, q, share):
 
 
 @njit(cache=True, error_model="numpy")
-def _triangle(p, q, o, dp, dq, do, waves, time, dynamic, most):
+def _triangle(p, q, o, dp, dq, do, sea, time, dynamic, most):
     """`_mean` of the wet part of a triangle with depths at its corners, times the part that is wet."""
     wp, wq, wo = dp > 0.0, dq > 0.0, do > 0.0
     if wp and wq and wo:
-        return _mean(p, q, o, waves, time, dynamic, most)
+        return _mean(p, q, o, sea, time, dynamic, most)
     # turn it so that the first corner is alone on its side
     alone = int(wp) + int(wq) + int(wo) == 1
     if wq == alone and wp != alone and wo != alone:
@@ -89,37 +92,37 @@ def _triangle(p, q, o, dp, dq, do, waves, time, dynamic, most):
     s, t = dp / (dp - dq), dp / (dp - do)
     a, b = _between(p, q, s), _between(p, o, t)
     if alone:
-        m = _mean(p, a, b, waves, time, dynamic, most)
+        m = _mean(p, a, b, sea, time, dynamic, most)
         return s * t * m[0], s * t * m[1], s * t * m[2], s * t * m[3]
-    one, two = _mean(a, q, o, waves, time, dynamic, most), _mean(a, o, b, waves, time, dynamic, most)
+    one, two = _mean(a, q, o, sea, time, dynamic, most), _mean(a, o, b, sea, time, dynamic, most)
     f, g = 1.0 - s, s * (1.0 - t)
     return f * one[0] + g * two[0], f * one[1] + g * two[1], f * one[2] + g * two[2], f * one[3] + g * two[3]
 
 
 @njit(cache=True, error_model="numpy")
-def _head_at(b, s, x, y, z, origin, r, level, waves, time, dynamic):
+def _head_at(b, s, x, y, z, origin, r, level, sea, time, dynamic):
     """Head at a place of a frame: steps x, y, z of size s from b."""
     wx, wy, wz = placed(origin, r, b[0] + s * x, b[1] + s * y, b[2] + s * z)
-    return head(waves, wx, wy, wz - level, time, dynamic)
+    return head(sea, wx, wy, wz - level, time, dynamic)
 
 
 @njit(cache=True, error_model="numpy")
-def _node(m, b, size, origin, r, level, waves, time, dynamic):
+def _node(m, b, size, origin, r, level, sea, time, dynamic):
     """Force and torque of the head over a node with moments m about b, in its frame and about its origin."""
     s = size / math.sqrt(3.0)
-    p = _head_at(b, s, 0.0, 0.0, 0.0, origin, r, level, waves, time, dynamic)
-    px = _head_at(b, s, 1.0, 0.0, 0.0, origin, r, level, waves, time, dynamic)
-    py = _head_at(b, s, 0.0, 1.0, 0.0, origin, r, level, waves, time, dynamic)
-    pz = _head_at(b, s, 0.0, 0.0, 1.0, origin, r, level, waves, time, dynamic)
-    nx = _head_at(b, s, -1.0, 0.0, 0.0, origin, r, level, waves, time, dynamic)
-    ny = _head_at(b, s, 0.0, -1.0, 0.0, origin, r, level, waves, time, dynamic)
-    nz = _head_at(b, s, 0.0, 0.0, -1.0, origin, r, level, waves, time, dynamic)
-    xy = _head_at(b, s, 1.0, 1.0, 0.0, origin, r, level, waves, time, dynamic)
-    xy += _head_at(b, s, -1.0, -1.0, 0.0, origin, r, level, waves, time, dynamic)
-    xz = _head_at(b, s, 1.0, 0.0, 1.0, origin, r, level, waves, time, dynamic)
-    xz += _head_at(b, s, -1.0, 0.0, -1.0, origin, r, level, waves, time, dynamic)
-    yz = _head_at(b, s, 0.0, 1.0, 1.0, origin, r, level, waves, time, dynamic)
-    yz += _head_at(b, s, 0.0, -1.0, -1.0, origin, r, level, waves, time, dynamic)
+    p = _head_at(b, s, 0.0, 0.0, 0.0, origin, r, level, sea, time, dynamic)
+    px = _head_at(b, s, 1.0, 0.0, 0.0, origin, r, level, sea, time, dynamic)
+    py = _head_at(b, s, 0.0, 1.0, 0.0, origin, r, level, sea, time, dynamic)
+    pz = _head_at(b, s, 0.0, 0.0, 1.0, origin, r, level, sea, time, dynamic)
+    nx = _head_at(b, s, -1.0, 0.0, 0.0, origin, r, level, sea, time, dynamic)
+    ny = _head_at(b, s, 0.0, -1.0, 0.0, origin, r, level, sea, time, dynamic)
+    nz = _head_at(b, s, 0.0, 0.0, -1.0, origin, r, level, sea, time, dynamic)
+    xy = _head_at(b, s, 1.0, 1.0, 0.0, origin, r, level, sea, time, dynamic)
+    xy += _head_at(b, s, -1.0, -1.0, 0.0, origin, r, level, sea, time, dynamic)
+    xz = _head_at(b, s, 1.0, 0.0, 1.0, origin, r, level, sea, time, dynamic)
+    xz += _head_at(b, s, -1.0, 0.0, -1.0, origin, r, level, sea, time, dynamic)
+    yz = _head_at(b, s, 0.0, 1.0, 1.0, origin, r, level, sea, time, dynamic)
+    yz += _head_at(b, s, 0.0, -1.0, -1.0, origin, r, level, sea, time, dynamic)
     # its gradient, and half its second derivatives, those across once for both
     step, square = 0.5 / s, 0.5 / (s * s)
     g0, g1, g2 = step * (px - nx), step * (py - ny), step * (pz - nz)
@@ -157,6 +160,16 @@ def _lever(m, i, c, p, g0, g1, g2):
 
 
 @njit(cache=True, error_model="numpy")
+def _typical(waves):
+    """The wave number [rad/m] of a single wave of the same energy whose third derivatives are as large."""
+    energy = bent = 0.0
+    for i in range(waves.shape[0]):
+        square = waves[i, 0] * waves[i, 0]
+        energy, bent = energy + square, bent + square * math.hypot(waves[i, 1], waves[i, 2]) ** 6
+    return (bent / energy) ** (1.0 / 6.0) if energy > 0.0 else 0.0
+
+
+@njit(cache=True, error_model="numpy")
 def press_hulls(
     vertices,  # as for `clip.submerge_hulls`
     faces,
@@ -177,14 +190,21 @@ def press_hulls(
     out,  # (h, 6) force over rho g [m^3] and torque over rho g about the frame's origin [m^4], world frame
 ):
     """The pressure of the water on the wet side of each hull."""
-    amplitude = steepness = most = 0.0
-    for i in range(waves.shape[0]):
-        k = math.hypot(waves[i, 1], waves[i, 2])
-        amplitude += abs(waves[i, 0])
-        steepness += abs(waves[i, 0]) * k
-        most = max(most, k)
+    many = waves.shape[0]
+    most = _typical(waves)
+    near, flat, solid = np.empty((many, 6)), np.empty(local.FLAT), np.empty(local.SOLID)
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
+        out[h, :] = 0.0
+        # what is dry needs no waves
+        x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
+        radius = math.sqrt(whole[h, 8] ** 2 + whole[h, 9] ** 2 + whole[h, 10] ** 2)
+        eta, spread = swing(waves, x, y, time, radius)
+        if level + eta - z <= -radius - spread:
+            continue
+        steepest = spread / radius
+        count, under, depth = gather(waves, x, y, z - level, time, radius, dynamic, near, flat, solid)
+        sea = (near, count, many, flat, solid, x, y, under, depth)
         fx = fy = fz = tx = ty = tz = 0.0
         f0 = f1 = f2 = t0 = t1 = t2 = 0.0
         i, end = nodes[h], nodes[h + 1]
@@ -192,14 +212,14 @@ def press_hulls(
             e0, e1, e2 = boxes[i, 3], boxes[i, 4], boxes[i, 5]
             x, y, z = placed(origin, r, boxes[i, 0], boxes[i, 1], boxes[i, 2])
             size = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-            depth = level + elevation(waves, x, y, time) - z
-            reach = abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2 + min(2.0 * amplitude, steepness * size)
+            depth = level + surface(sea, x, y, time) - z
+            reach = abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2 + steepest * size
             after = spans[i, 4]
             if depth <= -reach:
                 i = after
                 continue
             if depth >= reach and most * size <= SMALL and size > 0.0:
-                some = _node(moments[i], boxes[i], size, origin, r, level, waves, time, dynamic)
+                some = _node(moments[i], boxes[i], size, origin, r, level, sea, time, dynamic)
                 f0, f1, f2 = f0 + some[0], f1 + some[1], f2 + some[2]
                 t0, t1, t2 = t0 + some[3], t1 + some[4], t2 + some[5]
                 i = after
@@ -210,7 +230,7 @@ def press_hulls(
             base = spans[i, 2]
             for n in range(base, spans[i, 3]):
                 x, y, z = placed(origin, r, vertices[n, 0], vertices[n, 1], vertices[n, 2])
-                depths[n - base] = level + elevation(waves, x, y, time) - z
+                depths[n - base] = level + surface(sea, x, y, time) - z
             for f in range(spans[i, 0], spans[i, 1]):
                 j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
                 dj, dk, do = depths[j - base], depths[k - base], depths[o - base]
@@ -219,7 +239,7 @@ def press_hulls(
                 p = placed((origin[0], origin[1], origin[2] - level), r, vertices[j, 0], vertices[j, 1], vertices[j, 2])
                 q = placed((origin[0], origin[1], origin[2] - level), r, vertices[k, 0], vertices[k, 1], vertices[k, 2])
                 s = placed((origin[0], origin[1], origin[2] - level), r, vertices[o, 0], vertices[o, 1], vertices[o, 2])
-                m, mx, my, mz = _triangle(p, q, s, dj, dk, do, waves, time, dynamic, most)
+                m, mx, my, mz = _triangle(p, q, s, dj, dk, do, sea, time, dynamic, most)
                 # from the frame's origin
                 mx, my, mz = mx - origin[0] * m, my - origin[1] * m, mz - (origin[2] - level) * m
                 ax, ay, az = _area(r, areas[f])

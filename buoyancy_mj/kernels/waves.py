@@ -7,6 +7,8 @@ import math
 
 from numba import njit
 
+from buoyancy_mj.kernels.currents import set_current, set_rate
+
 
 @njit(cache=True, error_model="numpy")
 def elevation(waves, x, y, time):
@@ -15,6 +17,22 @@ def elevation(waves, x, y, time):
     for i in range(waves.shape[0]):
         total += waves[i, 0] * math.cos(waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4])
     return total
+
+
+@njit(cache=True, error_model="numpy")
+def swing(waves, x, y, time, radius):
+    """Elevation at a place over the still level, and how much it can differ within a radius of it."""
+    eta = along = across = height = steepness = curvature = 0.0
+    for i in range(waves.shape[0]):
+        a, kx, ky = waves[i, 0], waves[i, 1], waves[i, 2]
+        angle = kx * x + ky * y - waves[i, 3] * time + waves[i, 4]
+        slope = a * math.sin(angle)
+        eta, along, across = eta + a * math.cos(angle), along - kx * slope, across - ky * slope
+        k = math.sqrt(kx * kx + ky * ky)
+        a = abs(a)
+        height, steepness, curvature = height + a, steepness + a * k, curvature + a * k * k
+    steepness = min(steepness, math.hypot(along, across) + curvature * radius)
+    return eta, min(2.0 * height, steepness * radius)
 
 
 @njit(cache=True, error_model="numpy")
@@ -29,21 +47,31 @@ def head(waves, x, y, z, time, dynamic):
     if not dynamic:
         return eta - z
     total = -z
-    many = waves.shape[0]
-    for i in range(many):
-        a = eta
-        if many > 1:
-            a = waves[i, 0] * math.cos(waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4])
-        depth = waves[i, 5]
-        k = math.hypot(waves[i, 1], waves[i, 2])
-        if k > 0.0:
-            below = z - eta
-            if math.isfinite(depth):
-                below = max(depth * below / (depth + eta), -depth) if depth + eta > 0.0 else -depth
-                a *= (1.0 + math.exp(-2.0 * k * (below + depth))) / (1.0 + math.exp(-2.0 * k * depth))
-            a *= math.exp(k * below)
-        total += a
+    for i in range(waves.shape[0]):
+        a = waves[i, 0] * math.cos(waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4])
+        total += a * fade(math.hypot(waves[i, 1], waves[i, 2]), waves[i, 5], stretched(z, eta, waves[i, 5]))[0]
     return total
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def stretched(z, eta, depth):
+    """Where Wheeler's stretching brings a height over the still level; never under the bottom."""
+    below = z - eta
+    if math.isfinite(depth):
+        below = max(depth * below / (depth + eta), -depth) if depth + eta > 0.0 else -depth
+    return below
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def fade(k, depth, z):
+    """Cosh and sinh of k (z + h) over cosh k h: how a wave's pressure, and its slope, fade with depth."""
+    if k == 0.0:
+        return 1.0, 1.0
+    even = odd = math.exp(k * z)
+    if math.isfinite(depth):
+        echo, bottom = math.exp(-2.0 * k * (z + depth)), 1.0 + math.exp(-2.0 * k * depth)
+        even, odd = even * (1.0 + echo) / bottom, odd * (1.0 - echo) / bottom
+    return even, odd
 
 
 SHORT = 1.6
@@ -76,13 +104,6 @@ def bend(angle, doubled):
         angle *= 2.0
         sine, cosine = 2.0 * (sine + angle * cosine + sine * cosine), -2.0 * (sine + angle) * (sine + angle)
     return sine, cosine
-
-
-@njit(cache=True, error_model="numpy")
-def elevations(waves, x, y, time, out):
-    """`elevation` at many points, written to `out`."""
-    for i in range(x.shape[0]):
-        out[i] = elevation(waves, x[i], y[i], time)
 
 
 @njit(cache=True, error_model="numpy")
@@ -132,8 +153,45 @@ def add_acceleration(waves, x, y, z, time, out):
         out[2] -= amplitude * omega * omega * decay * (1.0 - echo) * math.cos(angle)
 
 
+# at many points, for Python
+
+
 @njit(cache=True, error_model="numpy")
-def velocities(waves, points, level, time, out):
-    """`add_velocity` at many points (n, 3), added to `out` (n, 3)."""
+def elevations(waves, x, y, time, out):
+    """`elevation`, written to `out` (n,)."""
+    for i in range(x.shape[0]):
+        out[i] = elevation(waves, x[i], y[i], time)
+
+
+@njit(cache=True, error_model="numpy")
+def slopes(waves, x, y, time, out):
+    """Gradient of the elevation, written to `out` (n, 2)."""
+    for i in range(x.shape[0]):
+        out[i, 0] = out[i, 1] = 0.0
+        for w in range(waves.shape[0]):
+            angle = waves[w, 1] * x[i] + waves[w, 2] * y[i] - waves[w, 3] * time + waves[w, 4]
+            out[i, 0] -= waves[w, 0] * waves[w, 1] * math.sin(angle)
+            out[i, 1] -= waves[w, 0] * waves[w, 2] * math.sin(angle)
+
+
+@njit(cache=True, error_model="numpy")
+def heads(waves, points, level, time, out):
+    """`head` of linear waves at points (n, 3), written to `out` (n,)."""
     for i in range(points.shape[0]):
+        out[i] = head(waves, points[i, 0], points[i, 1], points[i, 2] - level, time, True)
+
+
+@njit(cache=True, error_model="numpy")
+def velocities(waves, current, points, level, time, out):
+    """Velocity of current and waves at points (n, 3), written to `out` (n, 3)."""
+    for i in range(points.shape[0]):
+        set_current(current, level - points[i, 2], time, out[i])
         add_velocity(waves, points[i, 0], points[i, 1], points[i, 2] - level, time, out[i])
+
+
+@njit(cache=True, error_model="numpy")
+def accelerations(waves, current, points, level, time, out):
+    """Its rate at one place, written to `out` (n, 3)."""
+    for i in range(points.shape[0]):
+        set_rate(current, time, out[i])
+        add_acceleration(waves, points[i, 0], points[i, 1], points[i, 2] - level, time, out[i])

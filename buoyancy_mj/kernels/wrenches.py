@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.waves import add_velocity
 
 
@@ -65,7 +66,7 @@ def add_drag(
     roots,  # (nbody,)
     level,
     waves,
-    current,
+    current,  # (n, 5), see `currents`
     time,
     timestep,
     out,  # (nbody, 6)
@@ -89,7 +90,7 @@ def add_drag(
         arm = centres[b, 1:] - xipos[b]
         far = centres[b, 1:] - subtree_com[root]
         w = cvel[b, :3]
-        water[:] = current
+        set_current(current, level - centres[b, 3], time, water)
         add_velocity(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, water)
         # velocity relative to the water, world frame
         ux = cvel[b, 3] + w[1] * far[2] - w[2] * far[1] - water[0]

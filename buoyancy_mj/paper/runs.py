@@ -14,7 +14,8 @@ from buoyancy_mj.kernels import clip
 from buoyancy_mj.methods import Method
 from buoyancy_mj.paper.statics import DENSITY
 from buoyancy_mj.scene import Scene, read_scene
-from buoyancy_mj.water import LevelOscillation, RegularWave, Water
+from buoyancy_mj.water import Water
+from buoyancy_mj.waves import LevelOscillation, RegularWave
 
 AMPLITUDE, FREQUENCY = 0.3, 0.5
 """The paper's surface: +-0.3 m at 0.5 Hz."""

@@ -1,0 +1,306 @@
+"""Irregular seas: their spectra, the statistics of long realisations, what the seed fixes, and what theory asks of water."""
+
+import math
+
+import numpy as np
+import pytest
+import trimesh
+from scipy.integrate import quad
+from scipy.signal import welch
+
+from buoyancy_mj import (
+    Buoyancy,
+    BuoyancyWarning,
+    JonswapSea,
+    ModelError,
+    PiersonMoskowitzSea,
+    RegularWave,
+    Water,
+    WaterError,
+    shapes,
+)
+from buoyancy_mj.exact import PackedHulls
+from buoyancy_mj.kernels import local
+from buoyancy_mj.kernels import waves as kernels
+from buoyancy_mj.scene import scene_from_table
+from buoyancy_mj.settings import Settings, settings_from_texts, texts_from_settings
+from tests import naive, vessels
+
+HOUR = np.arange(0.0, 3600.0, 0.1)
+SEAS = [
+    JonswapSea(0.6, 4.0),
+    JonswapSea(0.6, 4.0, gamma=7.0, spreading=4.0, seed=3),
+    JonswapSea(2.0, 8.0, gamma=1.0, depth=12.0, seed=7),
+    PiersonMoskowitzSea(0.6, seed=11),
+]
+
+
+def elevations(sea, times=HOUR, x=0.0):
+    """The surface at one place."""
+    a, kx, _, omega, phase, _ = sea.rows.T
+    return (a[:, None] * np.cos(kx[:, None] * x - omega[:, None] * times + phase[:, None])).sum(axis=0)
+
+
+# spectra
+
+
+def test_the_spectrum_is_the_published_one():
+    # Pierson and Moskowitz 1964 as in DNV-RP-C205, 3.5.5: 5/16 Hs^2 omega_p^4 omega^-5 exp(-5/4 (omega / omega_p)^-4)
+    sea, peak = JonswapSea(2.0, 8.0, gamma=1.0), 2 * math.pi / 8.0
+    for omega in (0.7 * peak, peak, 1.5 * peak, 3.0 * peak):
+        expected = 5 / 16 * 4.0 * peak**4 * omega**-5 * math.exp(-1.25 * (omega / peak) ** -4)
+        # what the cutoff takes is spread over the rest
+        assert float(sea.spectrum(omega)) == pytest.approx(expected, rel=2e-4)
+    # there too: JONSWAP is that times 1 - 0.287 ln gamma and times gamma^exp(...), at the peak gamma; good to 1 %
+    factor = float(JonswapSea(2.0, 8.0).spectrum(peak) / sea.spectrum(peak))
+    assert factor == pytest.approx(3.3 * (1.0 - 0.287 * math.log(3.3)), rel=0.01)
+
+
+@pytest.mark.parametrize("gamma", [1.0, 2.0, 3.3, 5.0, 7.0])
+def test_the_zero_crossing_period_is_the_published_one(gamma):
+    # DNV-RP-C205, 3.5.5: a fit, for gamma from 1 to 7
+    fit = 0.6673 + 0.05037 * gamma - 0.006230 * gamma**2 + 0.0003341 * gamma**3
+    assert JonswapSea(1.0, 6.0, gamma=gamma).zero_crossing_period / 6.0 == pytest.approx(fit, rel=0.01)
+
+
+@pytest.mark.parametrize("sea", SEAS[:3])
+def test_height_is_four_standard_deviations_and_the_waves_have_the_spectrums_moments(sea):
+    area, _ = quad(sea.spectrum, 0.3 * 2 * math.pi / sea.peak_period, 10 * 2 * math.pi / sea.peak_period, limit=200)
+    assert 4.0 * math.sqrt(area) == pytest.approx(sea.significant_height, rel=1e-4)
+    a, omega = sea.rows[:, 0], sea.rows[:, 3]
+    assert 4.0 * math.sqrt(0.5 * (a**2).sum()) == pytest.approx(sea.significant_height, rel=1e-12)
+    crossing = 2 * math.pi * math.sqrt((a**2).sum() / (a**2 * omega**2).sum())
+    assert crossing == pytest.approx(sea.zero_crossing_period, rel=1e-4)
+
+
+def test_a_fully_developed_sea_has_its_period_from_its_height():
+    # Pierson and Moskowitz 1964: Hs = 0.21 U^2 / g, omega_p = 0.877 g / U, with U the wind at 19.5 m
+    wind = 10.0
+    sea = PiersonMoskowitzSea(0.21 * wind**2 / 9.81)
+    assert 2 * math.pi / sea.peak_period == pytest.approx(0.877 * 9.81 / wind, rel=0.01)
+
+
+@pytest.mark.parametrize("s", [2.0, 10.0, 50.0])
+def test_directions_have_the_spread_of_their_exponent(s):
+    # mean cosine of cos^2s(b / 2): s / (s + 1)
+    rows = JonswapSea(1.0, 6.0, direction=0.7, spreading=s, components=500).rows
+    angles = np.arctan2(rows[:, 2], rows[:, 1]) - 0.7
+    assert np.cos(angles).mean() == pytest.approx(s / (s + 1.0), abs=2e-3)
+    assert np.sin(angles).mean() == pytest.approx(0.0, abs=2e-3)
+    # of all frequencies alike
+    assert abs(np.corrcoef(angles, rows[:, 3])[0, 1]) < 0.15
+
+
+# realisations
+
+
+@pytest.mark.parametrize("sea", SEAS)
+def test_an_hour_has_the_height_the_peak_and_the_crossings_of_its_spectrum(sea):
+    eta = elevations(sea)
+    assert 4.0 * eta.std() == pytest.approx(sea.significant_height, rel=0.03)
+    ups = np.count_nonzero((eta[:-1] < 0.0) & (eta[1:] >= 0.0))
+    spectrum = sea if isinstance(sea, JonswapSea) else sea.as_jonswap
+    assert 3600.0 / ups == pytest.approx(spectrum.zero_crossing_period, rel=0.03)
+
+
+@pytest.mark.parametrize("sea", SEAS)
+def test_the_spectrum_of_long_realisations_peaks_at_the_peak_period(sea):
+    # what an estimate sees of the peak, the estimate of the true spectrum sees too: compare centres of the highest parts
+    spectrum = sea if isinstance(sea, JonswapSea) else sea.as_jonswap
+    times = np.arange(0.0, 8 * 3600.0, 0.25)
+    frequencies, density = welch(elevations(sea, times), 4.0, nperseg=int(4 * 16 * sea.peak_period))
+    told = spectrum.spectrum(np.maximum(2 * math.pi * frequencies, 1e-6))
+    near = np.abs(frequencies * sea.peak_period - 1.0) < 0.3
+    found, expected = (np.average(frequencies[near], weights=d[near] ** 4) for d in (density, told))
+    assert found == pytest.approx(expected, rel=0.03)
+    assert expected == pytest.approx(1.0 / sea.peak_period, rel=0.05)
+
+
+@pytest.mark.parametrize("sea", SEAS)
+def test_an_hour_does_not_repeat_itself(sea):
+    # the correlation of the sea with itself any time later than thirty of its periods
+    omega = sea.rows[:, 3]
+    lags = np.arange(30 * sea.peak_period, 3600.0, 0.1)
+    correlation = np.cos(np.outer(lags, omega)).mean(axis=1)
+    assert np.abs(correlation).max() < 0.5
+
+
+def test_crests_are_distributed_as_of_a_gaussian_sea():
+    # Longuet-Higgins 1952: of narrow seas, one wave height in so many exceeds H: exp(-2 (H / Hs)^2)
+    sea = JonswapSea(1.0, 4.0, gamma=7.0, components=256)
+    eta = elevations(sea, np.arange(0.0, 4 * 3600.0, 0.1))
+    ups = np.flatnonzero((eta[:-1] < 0.0) & (eta[1:] >= 0.0))
+    heights = np.array([np.ptp(part) for part in np.split(eta, ups)[1:-1]])
+    third = np.sort(heights)[-len(heights) // 3 :].mean()
+    assert third == pytest.approx(0.95, abs=0.05)  # Goda: 0.95 of 4 sigma for seas of finite width
+    assert np.mean(heights > 1.0) == pytest.approx(math.exp(-2.0), abs=0.04)
+
+
+def test_the_seed_makes_the_sea_the_same_everywhere():
+    # the Mersenne Twister's first numbers for seed 0, 0.8444218515250481 and 0.7579544029403025, are part of Python's tests
+    rows = JonswapSea(1.0, 5.0, seed=0).rows
+    assert rows[:2, 4] == pytest.approx([2 * math.pi * 0.8444218515250481, 2 * math.pi * 0.7579544029403025], rel=1e-15)
+    again, other = JonswapSea(1.0, 5.0, seed=0).rows, JonswapSea(1.0, 5.0, seed=1).rows
+    assert np.array_equal(rows, again)
+    assert not np.allclose(rows[:, 4], other[:, 4])
+    assert rows[:, 3] == pytest.approx(other[:, 3])
+
+
+def test_seas_and_swell_add_up():
+    sea, swell = JonswapSea(0.5, 4.0, seed=2), RegularWave(0.2, period=9.0, direction=1.0)
+    both = Water(waves=[sea, swell])
+    assert len(both.rows) == 65
+    x, y = np.linspace(-5, 5, 7), np.linspace(3, -8, 7)
+    parts = Water(waves=sea).elevation(x, y, 1.3) + Water(waves=swell).elevation(x, y, 1.3)
+    assert both.elevation(x, y, 1.3) == pytest.approx(parts, abs=1e-14)
+
+
+# what theory asks of water
+
+
+@pytest.mark.parametrize("depth", [math.inf, 4.0])
+def test_water_is_kept_does_not_turn_and_moves_with_its_surface(depth):
+    water, h = Water(waves=JonswapSea(0.4, 3.0, spreading=5.0, depth=depth)), 1e-4
+    for p in np.array([[1.0, 2.0, -0.3], [-3.0, 0.5, -2.0]]):
+        gradient = np.array([(water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h) for e in np.eye(3)])
+        assert np.trace(gradient) == pytest.approx(0.0, abs=1e-7)
+        assert gradient == pytest.approx(gradient.T, abs=1e-7)
+        rate = (water.velocity(p, 0.2 + h) - water.velocity(p, 0.2 - h)) / (2 * h)
+        assert water.acceleration(p, 0.2) == pytest.approx(rate, abs=1e-6)
+        rise = (water.elevation(*p[:2], 0.2 + h) - water.elevation(*p[:2], 0.2 - h)) / (2 * h)
+        assert water.velocity([*p[:2], 0.0], 0.2)[2] == pytest.approx(float(rise), abs=1e-7)
+        around = [water.elevation(p[0] + h * a, p[1] + h * b, 0.2) for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1))]
+        slope = [(around[0] - around[1]) / (2 * h), (around[2] - around[3]) / (2 * h)]
+        assert water.slope(*p[:2], 0.2) == pytest.approx(slope, abs=1e-7)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 4.0])
+def test_pressure_and_acceleration_obey_eulers_equation_to_first_order(depth):
+    # rho a = -grad p - rho g z; the stretching, and the square of the velocity, are of second order
+    worst = []
+    for height in (1e-3, 2e-3):
+        water, h, density = Water(waves=JonswapSea(height, 3.0, spreading=5.0, depth=depth)), 1e-3, 1000.0
+        errors = []
+        for p in np.array([[1.0, 2.0, -0.2], [-3.0, 0.5, -1.0], [0.3, 4.0, -2.5]]):
+            slope = [(water.pressure(p + h * e, 0.4) - water.pressure(p - h * e, 0.4)) / (2 * h) for e in np.eye(3)]
+            errors.append(density * water.acceleration(p, 0.4) + np.array(slope) + [0.0, 0.0, density * 9.81])
+        worst.append(np.abs(errors).max())
+    assert worst[0] < 2e-3 * density * 9.81 * 1e-3 * (2 * math.pi / 3.0) ** 2 / 9.81 * 10
+    assert worst[1] / worst[0] == pytest.approx(4.0, rel=0.1)
+
+
+def test_pressure_is_zero_on_an_irregular_surface():
+    water = Water(density=1025.0, level=0.3, waves=JonswapSea(0.6, 4.0, spreading=5.0))
+    for x, y in ((0.0, 0.0), (3.0, -2.0)):
+        eta = float(water.elevation(x, y, 2.0))
+        assert float(water.pressure([x, y, eta], 2.0)) == pytest.approx(0.0, abs=1e-9)
+
+
+# many waves on hulls
+
+
+@pytest.mark.parametrize("depth", [math.inf, 3.0])
+@pytest.mark.parametrize(("radius", "z"), [(0.3, 0.0), (0.3, -0.6), (2.5, -1.0)])
+def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
+    rows = Water(waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]).rows
+    near, flat, solid = np.empty((len(rows), 6)), np.empty(local.FLAT), np.empty(local.SOLID)
+    count, middle, bottom = local.gather(rows, 1.3, -2.0, z, 0.7, radius, True, near, flat, solid)
+    # the most of the waves are in them
+    assert count < len(rows) / 2
+    sea = (near, count, len(rows), flat, solid, 1.3, -2.0, middle, bottom)
+    rng = np.random.default_rng(1)
+    for _ in range(200):
+        away = rng.normal(size=3)
+        away *= radius * rng.random() ** (1 / 3) / np.linalg.norm(away)
+        x, y, height = np.array([1.3, -2.0, z]) + away
+        eta = naive.elevation(rows, x, y, 0.7)
+        assert local.surface(sea, x, y, 0.7) == pytest.approx(eta, abs=local.ACCURACY * radius)
+        if height < eta:
+            direct = kernels.head(rows, x, y, height, 0.7, True)
+            assert local.head(sea, x, y, height, 0.7, True) == pytest.approx(direct, abs=local.ACCURACY * radius)
+
+
+@pytest.mark.parametrize("components", [4, 5, 64, 200])
+def test_a_hull_in_a_sea_displaces_what_the_sum_over_small_triangles_says(components):
+    water = Water(waves=JonswapSea(0.6, 4.0, spreading=8.0, components=components))
+    mesh, turn = vessels.dented(3), naive.roll(0.4)
+    packed = PackedHulls([mesh], [0], [0], water)
+    fine = trimesh.Trimesh(mesh.vertices, mesh.faces).subdivide().subdivide().subdivide()
+    for time in (0.0, 1.1, 2.7):
+        place = np.array([0.4, -0.3, float(water.elevation(0.4, -0.3, time)) - 0.05])
+        found = packed.submerge(place[None], turn.reshape(1, 9), time)[0]
+        volume, moments = naive.directly(fine, place, turn, water, time)
+        assert found[0] == pytest.approx(volume, abs=2e-3 * mesh.volume)
+        assert found[0] * (found[1:4] - place) == pytest.approx(moments, abs=2e-3 * mesh.volume * mesh.radius)
+
+
+def test_waves_gathered_and_waves_one_by_one_push_alike():
+    # one wave, and the same wave as sixteen of a sixteenth
+    one = RegularWave(0.16, period=3.0, direction=0.3)
+    many = [RegularWave(0.01, period=3.0, direction=0.3)] * 16
+    mesh, turn = shapes.box((0.5, 0.3, 0.2)), naive.roll(0.4).reshape(1, 9)
+    for z in (0.0, -0.3, -1.0):
+        for time in (0.2, 0.9):
+            rows = [PackedHulls([mesh], [0], [0], Water(waves=w)) for w in (one, many)]
+            a, b = (packed.submerge(np.array([[0.1, 0.2, z]]), turn, time)[0] for packed in rows)
+            assert b[:5] == pytest.approx(a[:5], abs=1e-6)
+            a, b = (packed.press(np.array([[0.1, 0.2, z]]), turn, time, dynamic=True)[0] for packed in rows)
+            assert b == pytest.approx(a, abs=1e-6)
+
+
+# as text, and bad input
+
+
+def test_seas_stand_in_scenes_and_in_models():
+    table = {"kind": "jonswap", "significant_height": 0.5, "peak_period": 4.0, "seed": 5, "spreading": 8.0}
+    scene = scene_from_table({"title": "t", "vehicle": "hourglass", "water": {"waves": [table]}})
+    assert scene.water.waves == (JonswapSea(0.5, 4.0, seed=5, spreading=8.0),)
+    for sea in SEAS:
+        texts = texts_from_settings(Settings(water=Water(waves=sea)))
+        assert np.array_equal(settings_from_texts(texts, "here").water.rows, sea.rows)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: JonswapSea(-1.0, 5.0), "significant_height is -1.0; it must be at least 0"),
+        (lambda: JonswapSea(math.nan, 5.0), "significant_height is nan; it must be a finite number"),
+        (lambda: JonswapSea(1.0, 0.0), "peak_period is 0.0; it must be at least 1e-06"),
+        (lambda: JonswapSea(1.0, 5.0, gamma=0.5), "gamma is 0.5; it must be at least 1"),
+        (lambda: JonswapSea(1.0, 5.0, components=0), "components is 0; it must be a whole number from 1 to 10000"),
+        (lambda: JonswapSea(1.0, 5.0, components=6.5), "components is 6.5; it must be a whole number"),
+        (lambda: JonswapSea(1.0, 5.0, seed=-1), "seed is -1; it must be a whole number from 0"),
+        (lambda: JonswapSea(1.0, 5.0, spreading=0.0), "spreading is 0.0; it must be an exponent above 0, or inf"),
+        (lambda: JonswapSea(3.0, 9.0, depth=2.0), "significant_height is 3.0 m in water 2.0 m deep; such waves break"),
+        (lambda: PiersonMoskowitzSea(0.0), "significant_height is 0.0; it must be above 0"),
+    ],
+)
+def test_impossible_seas_are_told(make, message):
+    with pytest.raises(WaterError, match=message):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("wave", "message"),
+    [
+        (RegularWave(0.5, wavelength=5.0), "a wave 1 m high and 5 m long, 1.41 times as steep as one that breaks"),
+        (RegularWave(0.5, wavelength=50.0, depth=3.0), "make it at most 2.56 m high"),
+        (JonswapSea(3.0, 4.0), "a sea 3 m high at 4 s, 1.80 times as steep as seas get before their waves break"),
+    ],
+)
+def test_seas_that_break_are_told_with_the_number(wave, message):
+    water = Water(waves=wave)
+    model = vessels.box()
+    if isinstance(wave, RegularWave) and wave.depth == 3.0:
+        # 0.142 tanh(k h) wavelengths
+        assert water.doubts == ()
+        assert RegularWave(1.4, wavelength=50.0, depth=3.0).doubt.endswith(message)
+        return
+    with pytest.warns(BuoyancyWarning, match=message):
+        Buoyancy(model, water)
+
+
+def test_water_shallower_than_the_hull_is_told():
+    water = Water(waves=RegularWave(0.02, period=2.0, depth=0.1))
+    with pytest.raises(ModelError, match=r"the waves run in water 0\.1 m deep, and hull .* is 0\.\d+ m thick"):
+        Buoyancy(vessels.box(), water)
