@@ -12,7 +12,7 @@ from buoyancy_mj.kernels.native import Pressure
 from buoyancy_mj.methods import Packed
 from buoyancy_mj.water import Water
 
-CAUSES = ("buoyancy", "wave_pressure", "drag", "added_mass")
+CAUSES = ("buoyancy", "wave_pressure", "drag", "radiation", "added_mass")
 """Names of all loads that there are."""
 
 
@@ -39,6 +39,7 @@ class Acting:
         acting = {
             "wave_pressure": self.pressure != Pressure.archimedes,
             "drag": self.damping is not None,
+            "radiation": self.damping is not None and self.damping.radiates,
             "added_mass": self.is_heavy,
         }
         return tuple(cause for cause in CAUSES if acting.get(cause, True))

@@ -100,6 +100,8 @@ class Buoyancy:
         self.added_mass = added_masses(model, self.hulls, self.water.density, added_mass)
         """Added mass of those bodies that have one."""
         damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
+        if damping is not None and len(damping.panels) and not isinstance(self.method, Exact):
+            raise MethodError(f"drag by panels needs the method 'exact', not '{self.method.name}', which knows no triangles")
         self._acting = Acting(self.water, self.packed, self._owners, self.pressure, damping, self.added_mass)
         self.causes = self._acting.causes
         """Names of the loads that act."""

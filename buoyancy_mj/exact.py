@@ -129,6 +129,11 @@ class PackedHulls:
         return {name: getattr(self, "frames" if name == "frames" else f"_{name}") for name in self.ARRAYS}
 
     @property
+    def triangles(self) -> tuple[NDArray[Any], ...]:
+        """What `kernels.panels` reads of the hulls."""
+        return self._vertices, self._faces, self._areas, self._nodes, self._spans, self._whole, self.frames
+
+    @property
     def counts(self) -> Mapping[str, int]:
         """Work done so far: not counted here."""
         return {}

@@ -125,6 +125,10 @@ class Native:
                 "volumes": drag.volumes,
                 "linear": drag.linear,
                 "quadratic": drag.quadratic,
+                "coupled": drag.coupled,
+                "matrices": drag.matrices,
+                "radiation": drag.radiation,
+                "panels": drag.panels,
                 "members": drag.members,
                 "member_starts": drag.member_starts,
                 "massive": added.bodies,
@@ -210,7 +214,16 @@ class _Scratch(Table):
 NO_HULLS: Mapping[str, NDArray[Any]] = {name: np.zeros(0, np.int64) for name in PackedHulls.ARRAYS}
 """Of a water whose hulls compiled code does not submerge."""
 NO_DAMPING = Damping(
-    np.zeros(0, np.int64), np.zeros(0), np.zeros((0, 6)), np.zeros((0, 6)), np.zeros(0, np.int64), np.zeros(1, np.int64)
+    np.zeros(0, np.int64),
+    np.zeros(0),
+    np.zeros((0, 6)),
+    np.zeros((0, 6)),
+    np.zeros(0, np.int64),
+    np.zeros((0, 72)),
+    np.zeros((0, 4)),
+    np.zeros((0, 5)),
+    np.zeros(0, np.int64),
+    np.zeros(1, np.int64),
 )
 
 

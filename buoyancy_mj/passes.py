@@ -4,8 +4,9 @@ import mujoco
 import numpy as np
 
 from buoyancy_mj.acting import Acting
+from buoyancy_mj.drag import Damping
 from buoyancy_mj.exact import PackedHulls
-from buoyancy_mj.kernels import inertia, wrenches
+from buoyancy_mj.kernels import damping, inertia, panels, wrenches
 from buoyancy_mj.kernels.native import Id, Pressure
 from buoyancy_mj.native import Record
 
@@ -45,32 +46,7 @@ def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight:
         )
         record.total += pushed
     if acting.damping is not None:
-        drag, damping = record.causes["drag"], acting.damping
-        drag[:] = 0.0
-        wrenches.add_drag(
-            record.centres,
-            damping.bodies,
-            damping.volumes,
-            damping.linear,
-            damping.quadratic,
-            damping.members,
-            damping.member_starts,
-            model.body_mass,
-            model.body_inertia,
-            data.xipos,
-            data.ximat,
-            data.xmat,
-            data.cvel,
-            data.subtree_com,
-            model.body_rootid,
-            acting.water.level,
-            acting.rows,
-            acting.current,
-            data.time,
-            model.opt.timestep,
-            drag,
-        )
-        record.total += drag
+        _slow_down(acting, acting.damping, model, data, record)
     if acting.is_heavy:
         reaction, added = record.causes["added_mass"], acting.added
         reaction[:] = 0.0
@@ -98,6 +74,68 @@ def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight:
             reaction,
         )
         record.total += reaction
+
+
+def _slow_down(acting: Acting, slow: Damping, model: mujoco.MjModel, data: mujoco.MjData, record: Record) -> None:
+    """Drag and the damping by waves made."""
+    rigid = (slow.members, slow.member_starts, model.body_mass, model.body_inertia)
+    moving = (data.ximat, data.xmat, data.cvel, data.subtree_com, model.body_rootid, acting.water.level, acting.rows)
+    current, step = acting.current, model.opt.timestep
+    drag = record.causes["drag"]
+    drag[:] = 0.0
+    damping.add_drag(
+        record.centres,
+        slow.bodies,
+        slow.volumes,
+        slow.linear,
+        slow.quadratic,
+        slow.coupled,
+        slow.matrices,
+        *rigid,
+        data.xpos,
+        data.xipos,
+        *moving,
+        current,
+        data.time,
+        step,
+        drag,
+    )
+    if len(slow.panels):
+        assert isinstance(acting.packed, PackedHulls)
+        panels.add_panels(
+            *acting.packed.triangles,
+            data.geom_xpos,
+            data.geom_xmat,
+            record.results,
+            acting.owners,
+            slow.bodies,
+            slow.panels,
+            *rigid,
+            data.xipos,
+            *moving,
+            current,
+            data.time,
+            step,
+            drag,
+        )
+    record.total += drag
+    if slow.radiates:
+        made = record.causes["radiation"]
+        made[:] = 0.0
+        damping.add_radiation(
+            record.results,
+            acting.owners,
+            record.centres,
+            slow.bodies,
+            slow.radiation,
+            *rigid,
+            data.xipos,
+            *moving,
+            data.time,
+            step,
+            made,
+        )
+        record.total += made
 
 
 def make_heavier(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, record: Record) -> None:

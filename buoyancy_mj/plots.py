@@ -20,6 +20,7 @@ COLOURS: Mapping[str, Colour] = {
     "buoyancy": (60, 160, 255),
     "wave_pressure": (80, 200, 190),
     "drag": (240, 90, 60),
+    "radiation": (240, 150, 200),
     "added_mass": (170, 120, 230),
 }
 """Of forces, in plots and as arrows."""

@@ -10,7 +10,7 @@ from enum import IntEnum
 import numpy as np
 from numba import carray, njit
 
-from buoyancy_mj.kernels import clip, inertia, pressure, wrenches
+from buoyancy_mj.kernels import clip, damping, inertia, panels, pressure, wrenches
 from buoyancy_mj.kernels.memory import (
     call,
     corners,
@@ -29,7 +29,8 @@ from buoyancy_mj.kernels.memory import (
 
 Water = IntEnum(
     "Water",
-    "vertices faces areas nodes spans boxes moments whole frames waves owners bodies damped volumes linear quadratic "
+    "vertices faces areas nodes spans boxes moments whole frames waves owners bodies "
+    "damped volumes linear quadratic coupled matrices radiation panels "
     "members member_starts massive massive_volumes added sea current offsets pool links",
     start=0,
 )
@@ -38,7 +39,9 @@ Pressure = IntEnum("Pressure", "archimedes hydrostatic froude_krylov", start=0)
 """What the water's pressure in waves is taken for."""
 Link = IntEnum("Link", "model signature act submerge error gravity_text factor project", start=0)
 """Words of 'links': the own model and its signature; C functions, 0 for none; a text for the engine's error function."""
-Record = IntEnum("Record", "results centres heads buoyancy wave_pressure drag added_mass total inertia instant ids", start=0)
+Record = IntEnum(
+    "Record", "results centres heads buoyancy wave_pressure drag radiation added_mass total inertia instant ids", start=0
+)
 """Arrays of what an evaluation leaves."""
 Id = IntEnum("Id", "alive model data water sizes heavier", start=0)
 """Words of 'ids': whether it is in use; addresses of what it is of; a sum over the sizes of the model's geoms; and
@@ -155,36 +158,8 @@ def _evaluate(model, data, water, scratch, record):
         for b in range(nbody):
             for i in range(6):
                 total[b, i] += pushed[b, i]
-    damped = words(water, Water.damped)
-    if damped.shape[0] > 0:
-        drag = grid(record, Record.drag)
-        drag[:, :] = 0.0
-        wrenches.add_drag(
-            centres,
-            damped,
-            row(water, Water.volumes),
-            grid(water, Water.linear),
-            grid(water, Water.quadratic),
-            words(water, Water.members),
-            words(water, Water.member_starts),
-            carray(pointer(word(model + offsets[Offset.body_mass])), (nbody,), np.float64),
-            doubles(word(model + offsets[Offset.body_inertia]), nbody, 3),
-            xipos,
-            doubles(word(data + offsets[Offset.ximat]), nbody, 9),
-            doubles(word(data + offsets[Offset.xmat]), nbody, 9),
-            doubles(word(data + offsets[Offset.cvel]), nbody, 6),
-            subtree_com,
-            roots,
-            sea[1],
-            waves,
-            grid(water, Water.current),
-            time,
-            number(model + offsets[Offset.timestep]),
-            drag,
-        )
-        for b in range(nbody):
-            for i in range(6):
-                total[b, i] += drag[b, i]
+    if words(water, Water.damped).shape[0] > 0:
+        _slow_down(model, data, water, record, time, xipos, subtree_com, roots)
     if words(water, Water.massive).shape[0] > 0:
         _add_mass(model, data, water, record, time)
     wrenches.project(
@@ -204,6 +179,116 @@ def _evaluate(model, data, water, scratch, record):
     ids[Id.model], ids[Id.data] = model, data
     row(record, Record.instant)[0] = time
     return 0
+
+
+@njit(cache=True, error_model="numpy")
+def _slow_down(model, data, water, record, time, xipos, subtree_com, roots):
+    """Add drag and the damping by waves made."""
+    offsets, sea, waves = words(water, Water.offsets), row(water, Water.sea), grid(water, Water.waves)
+    nbody, ngeom = word(model + offsets[Offset.nbody]), word(model + offsets[Offset.ngeom])
+    wet, centres, total = grid(record, Record.results), grid(record, Record.centres), grid(record, Record.total)
+    bodies, owners = words(water, Water.damped), words(water, Water.owners)
+    members, member_starts = words(water, Water.members), words(water, Water.member_starts)
+    body_mass = carray(pointer(word(model + offsets[Offset.body_mass])), (nbody,), np.float64)
+    body_inertia = doubles(word(model + offsets[Offset.body_inertia]), nbody, 3)
+    xpos = doubles(word(data + offsets[Offset.xpos]), nbody, 3)
+    ximat = doubles(word(data + offsets[Offset.ximat]), nbody, 9)
+    xmat = doubles(word(data + offsets[Offset.xmat]), nbody, 9)
+    cvel = doubles(word(data + offsets[Offset.cvel]), nbody, 6)
+    current, timestep = grid(water, Water.current), number(model + offsets[Offset.timestep])
+    drag = grid(record, Record.drag)
+    drag[:, :] = 0.0
+    damping.add_drag(
+        centres,
+        bodies,
+        row(water, Water.volumes),
+        grid(water, Water.linear),
+        grid(water, Water.quadratic),
+        words(water, Water.coupled),
+        grid(water, Water.matrices),
+        members,
+        member_starts,
+        body_mass,
+        body_inertia,
+        xpos,
+        xipos,
+        ximat,
+        xmat,
+        cvel,
+        subtree_com,
+        roots,
+        sea[1],
+        waves,
+        current,
+        time,
+        timestep,
+        drag,
+    )
+    sheets = grid(water, Water.panels)
+    if sheets.shape[0] > 0:
+        panels.add_panels(
+            grid(water, Water.vertices),
+            corners(water, Water.faces),
+            grid(water, Water.areas),
+            words(water, Water.nodes),
+            spans(water, Water.spans),
+            grid(water, Water.whole),
+            words(water, Water.frames),
+            doubles(word(data + offsets[Offset.geom_xpos]), ngeom, 3),
+            doubles(word(data + offsets[Offset.geom_xmat]), ngeom, 9),
+            wet,
+            owners,
+            bodies,
+            sheets,
+            members,
+            member_starts,
+            body_mass,
+            body_inertia,
+            xipos,
+            ximat,
+            xmat,
+            cvel,
+            subtree_com,
+            roots,
+            sea[1],
+            waves,
+            current,
+            time,
+            timestep,
+            drag,
+        )
+    for b in range(nbody):
+        for i in range(6):
+            total[b, i] += drag[b, i]
+    made = grid(record, Record.radiation)
+    if made.shape[0] == 0:
+        return
+    made[:, :] = 0.0
+    damping.add_radiation(
+        wet,
+        owners,
+        centres,
+        bodies,
+        grid(water, Water.radiation),
+        members,
+        member_starts,
+        body_mass,
+        body_inertia,
+        xipos,
+        ximat,
+        xmat,
+        cvel,
+        subtree_com,
+        roots,
+        sea[1],
+        waves,
+        time,
+        timestep,
+        made,
+    )
+    for b in range(nbody):
+        for i in range(6):
+            total[b, i] += made[b, i]
 
 
 @njit(cache=True, error_model="numpy")

@@ -1,0 +1,156 @@
+"""Drag triangle by triangle: pressure and skin friction on what is wet of a mesh."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from buoyancy_mj.kernels.clip import placed
+from buoyancy_mj.kernels.currents import set_current
+from buoyancy_mj.kernels.damping import relative_velocity, rigid_body
+from buoyancy_mj.kernels.waves import add_velocity
+
+LEAST_REYNOLDS = 1e4
+"""Below it the line of the ITTC is taken no further: flow there is not turbulent."""
+
+
+@njit(cache=True, error_model="numpy")
+def add_panels(
+    vertices,  # as for `clip.submerge_hulls`
+    faces,
+    areas,
+    nodes,
+    spans,
+    whole,
+    frames,
+    positions,
+    rotations,
+    wet,  # (h, 6) submersion of the hulls
+    owners,  # (h,)
+    bodies,  # likewise
+    panels,  # (n, 5) coefficients of faces that lead and that trail, length [m], viscosity [m^2/s], density; 0 for none
+    members,
+    member_starts,
+    body_mass,
+    body_inertia,
+    xipos,
+    ximat,
+    xmat,
+    cvel,
+    subtree_com,
+    roots,
+    level,
+    waves,
+    current,
+    time,
+    timestep,
+    out,
+):
+    """Add the drag of each wet triangle: pressure by how squarely it meets the flow, and skin friction along it.
+
+    Of pressure, 1/2 rho C A (u.n)^2 against the normal on faces that lead, away from it on those that
+    trail. Of friction, 1/2 rho C_F A |t| t along the face, t the velocity there, C_F of a smooth plate as
+    long as the body, 0.075 / (log10 Re - 2)^2 (ITTC 1957). The surface is the plane that touches it over
+    the middle of the hull. All is held so that its power stops no more than the motion there is.
+    """
+    water, v, f = np.empty(3), np.empty(6), np.empty(6)
+    rate = 1.0 / timestep if timestep > 0.0 else math.inf
+    for n in range(bodies.shape[0]):
+        density = panels[n, 4]
+        if not density > 0.0:
+            continue
+        b = bodies[n]
+        r, at = xmat[b], xipos[b]
+        f[:] = 0.0
+        water[:] = 0.0
+        relative_velocity(r, at, cvel[b], subtree_com[roots[b]], water, v)
+        vx, vy, vz = placed((0.0, 0.0, 0.0), r, v[0], v[1], v[2])
+        any_wet = False
+        for h in range(owners.shape[0]):
+            if owners[h] != b or not wet[h, 0] > 0.0:
+                continue
+            any_wet = True
+            origin, turn = positions[frames[h]], rotations[frames[h]]
+            x, y, _ = placed(origin, turn, whole[h, 5], whole[h, 6], whole[h, 7])
+            eta, gx, gy = _tangent(waves, x, y, time)
+            set_current(current, level - wet[h, 3], time, water)
+            add_velocity(waves, wet[h, 1], wet[h, 2], wet[h, 3] - level, time, water)
+            speed = math.sqrt((vx - water[0]) ** 2 + (vy - water[1]) ** 2 + (vz - water[2]) ** 2)
+            reynolds = max(speed * panels[n, 2] / panels[n, 3], LEAST_REYNOLDS)
+            friction = 0.075 / (math.log10(reynolds) - 2.0) ** 2
+            i = nodes[h]
+            for t in range(spans[i, 0], spans[i, 1]):
+                px, py, pz = placed(
+                    origin, turn, vertices[faces[t, 0], 0], vertices[faces[t, 0], 1], vertices[faces[t, 0], 2]
+                )
+                qx, qy, qz = placed(
+                    origin, turn, vertices[faces[t, 1], 0], vertices[faces[t, 1], 1], vertices[faces[t, 1], 2]
+                )
+                ox, oy, oz = placed(
+                    origin, turn, vertices[faces[t, 2], 0], vertices[faces[t, 2], 1], vertices[faces[t, 2], 2]
+                )
+                dp = level + eta + gx * (px - x) + gy * (py - y) - pz
+                dq = level + eta + gx * (qx - x) + gy * (qy - y) - qz
+                do = level + eta + gx * (ox - x) + gy * (oy - y) - oz
+                share = _wet_share(dp, dq, do)
+                if share == 0.0:
+                    continue
+                length = areas[t, 3]
+                if length == 0.0:
+                    continue
+                nx, ny, nz = placed((0.0, 0.0, 0.0), turn, areas[t, 0], areas[t, 1], areas[t, 2])
+                size = math.sqrt(nx * nx + ny * ny + nz * nz)
+                nx, ny, nz = nx / size, ny / size, nz / size
+                cx, cy, cz = (px + qx + ox) / 3.0 - at[0], (py + qy + oy) / 3.0 - at[1], (pz + qz + oz) / 3.0 - at[2]
+                wx, wy, wz = cvel[b, 0], cvel[b, 1], cvel[b, 2]
+                ux = vx + wy * cz - wz * cy - water[0]
+                uy = vy + wz * cx - wx * cz - water[1]
+                uz = vz + wx * cy - wy * cx - water[2]
+                into = ux * nx + uy * ny + uz * nz
+                tx, ty, tz = ux - into * nx, uy - into * ny, uz - into * nz
+                along = 0.5 * density * size * share * friction * math.sqrt(tx * tx + ty * ty + tz * tz)
+                square = 0.5 * density * size * share * (panels[n, 0] if into > 0.0 else panels[n, 1]) * abs(into) * into
+                fx, fy, fz = -along * tx - square * nx, -along * ty - square * ny, -along * tz - square * nz
+                f[0], f[1], f[2] = f[0] + fx, f[1] + fy, f[2] + fz
+                f[3], f[4], f[5] = f[3] + cy * fz - cz * fy, f[4] + cz * fx - cx * fz, f[5] + cx * fy - cy * fx
+        if not any_wet:
+            continue
+        # its power over a timestep, beside what the body's motion relative to the water holds
+        mass, inertias = rigid_body(
+            members[member_starts[n] : member_starts[n + 1]], body_mass, body_inertia, xipos, ximat, r
+        )
+        least = min(inertias[0], inertias[1], inertias[2])
+        push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
+        twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
+        ux, uy, uz = vx - water[0], vy - water[1], vz - water[2]
+        motion = mass * (ux * ux + uy * uy + uz * uz) + least * (cvel[b, 0] ** 2 + cvel[b, 1] ** 2 + cvel[b, 2] ** 2)
+        change = (push / mass + twist / least) / (rate * rate) if least > 0.0 and mass > 0.0 else math.inf
+        held = math.sqrt(motion / change) if change > motion else 1.0
+        for c in range(6):
+            out[b, c] += held * f[c]
+
+
+@njit(cache=True, error_model="numpy")
+def _tangent(waves, x, y, time):
+    """Elevation over the still level at a place, and its gradient."""
+    eta = gx = gy = 0.0
+    for w in range(waves.shape[0]):
+        angle = waves[w, 1] * x + waves[w, 2] * y - waves[w, 3] * time + waves[w, 4]
+        slope = waves[w, 0] * math.sin(angle)
+        eta, gx, gy = eta + waves[w, 0] * math.cos(angle), gx - waves[w, 1] * slope, gy - waves[w, 2] * slope
+    return eta, gx, gy
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _wet_share(p, q, o):
+    """The part of a triangle's area that is wet, by the depths of its corners."""
+    count = int(p > 0.0) + int(q > 0.0) + int(o > 0.0)
+    if count == 0 or count == 3:
+        return 0.0 if count == 0 else 1.0
+    # turn it so that the first corner is alone on its side
+    if (q > 0.0) == (count == 1) and (p > 0.0) != (count == 1):
+        p, q = q, p
+    elif (o > 0.0) == (count == 1) and (p > 0.0) != (count == 1):
+        p, o = o, p
+    cut = p / (p - q) * (p / (p - o))
+    return cut if count == 1 else 1.0 - cut
