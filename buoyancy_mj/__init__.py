@@ -4,6 +4,9 @@ from buoyancy_mj.ballast import Ballast as Ballast
 from buoyancy_mj.ballast import Placed as Placed
 from buoyancy_mj.ballast import ballast as ballast
 from buoyancy_mj.buoyancy import Buoyancy as Buoyancy
+from buoyancy_mj.coefficients import Coefficients as Coefficients
+from buoyancy_mj.coefficients import read_coefficients as read_coefficients
+from buoyancy_mj.coefficients import state_coefficients as state_coefficients
 from buoyancy_mj.convex_hull import ConvexHull as ConvexHull
 from buoyancy_mj.currents import CurrentProfile as CurrentProfile
 from buoyancy_mj.currents import CurrentSeries as CurrentSeries
