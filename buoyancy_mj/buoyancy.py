@@ -2,6 +2,7 @@
 
 import contextlib
 import functools
+import math
 import threading
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj import callbacks, passes
 from buoyancy_mj.acting import Acting
 from buoyancy_mj.added_mass import added_masses
+from buoyancy_mj.choice import body_name
 from buoyancy_mj.drag import Drag, estimated
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, MethodError, ModelError, choices
 from buoyancy_mj.exact import Exact
@@ -96,7 +98,7 @@ class Buoyancy:
             turns,
             [hull.fill for hull in self.hulls],
         )
-        _doubt(self.water, self.hulls)
+        _doubt(model, self.water, self.hulls)
         self.added_mass = added_masses(model, self.hulls, self.water.density, added_mass)
         """Added mass of those bodies that have one."""
         damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
@@ -282,17 +284,23 @@ def pressure_of(name: str, method: Method) -> Pressure:
     return kinds[name]
 
 
-def _doubt(water: Water, hulls: Sequence[Hull]) -> None:
-    """Tell of waves that break, and refuse water in which a hull cannot lie."""
+def _doubt(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
+    """Tell of waves that break, and refuse water in which what floats would be aground."""
     for doubt in water.doubts:
         warnings.warn(f"the water has {doubt}", BuoyancyWarning, stacklevel=3)
     shallowest = float(np.min(water.rows[:, 5], initial=np.inf))
-    for hull in hulls:
-        least = float(hull.mesh.extents.min())
+    for body in {hull.body for hull in hulls}:
+        root = int(model.body_rootid[body])
+        if math.isinf(shallowest) or model.body_dofnum[root] != 6:
+            continue
+        together = [hull for hull in hulls if model.body_rootid[hull.body] == root]
+        # what it must displace, over no more than half the area of its hulls: Cauchy
+        volume = min(float(model.body_subtreemass[root]) / water.density, sum(hull.displacement for hull in together))
+        least = volume / (0.5 * sum(hull.mesh.area for hull in together))
         if least > shallowest:
             raise ModelError(
-                f"the waves run in water {shallowest:g} m deep, and hull '{hull.name}' is {least:.3g} m thick; "
-                "make the waves' depth greater"
+                f"the waves run in water {shallowest:g} m deep, and body '{body_name(model, body)}' has a draft of at least "
+                f"{least:.3g} m in any attitude; make the waves' depth greater"
             )
 
 

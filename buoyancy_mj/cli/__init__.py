@@ -9,4 +9,6 @@ from buoyancy_mj.cli import sweeps as sweeps  # isort: split
 
 from buoyancy_mj.cli import papers as papers  # isort: split
 
+from buoyancy_mj.cli import validations as validations  # isort: split
+
 from buoyancy_mj.cli.common import app as app
