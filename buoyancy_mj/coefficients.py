@@ -108,11 +108,11 @@ def _opened(path: Path) -> Any:
     """A dataset, and that it has what is needed."""
     try:
         import xarray
-    except ImportError as error:
-        raise ModelError(f"reading '{path}' needs xarray: pip install 'buoyancy_mj[coefficients]'") from error
-    try:
+
         with xarray.open_dataset(path) as opened:
             data = opened.load()
+    except ImportError as error:
+        raise ModelError(f"reading '{path}' needs xarray and h5py: pip install 'buoyancy_mj[coefficients]'") from error
     except (OSError, ValueError, TypeError) as error:
         raise ModelError(f"the dataset '{path}' cannot be read: {str(error).splitlines()[0]}") from error
     for name in ("added_mass", "radiation_damping", "omega", "radiating_dof", "influenced_dof"):

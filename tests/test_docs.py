@@ -20,7 +20,7 @@ README = (ROOT / "README.md").read_text()
     [
         *zip(
             re.findall(r"```python\n(.*?)```", README, re.DOTALL),
-            ["m^3 under water", "] N", "kg make it neutral"],
+            ["m^3 under water", "] N", "kg make it neutral", "Pa, under"],
             strict=True,
         )
     ],

@@ -203,11 +203,10 @@ def test_pressure_is_zero_on_an_irregular_surface():
 @pytest.mark.parametrize(("radius", "z"), [(0.3, 0.0), (0.3, -0.6), (2.5, -1.0)])
 def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
     rows = Water(waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]).rows
-    near, flat, solid = np.empty((len(rows), 6)), np.empty(local.FLAT), np.empty(local.SOLID)
-    count, middle, bottom = local.gather(rows, 1.3, -2.0, z, 0.7, radius, True, near, flat, solid)
+    sea = np.empty(local.NEAR + 6 * len(rows))
+    local.gather(rows, 1.3, -2.0, z, 0.7, radius, True, sea)
     # the most of the waves are in them
-    assert count < len(rows) / 2
-    sea = (near, count, len(rows), flat, solid, 1.3, -2.0, middle, bottom)
+    assert sea[local.COUNT] < len(rows) / 2
     rng = np.random.default_rng(1)
     for _ in range(200):
         away = rng.normal(size=3)

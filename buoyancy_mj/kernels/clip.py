@@ -116,7 +116,7 @@ def _approach(waves, origin, r, middle, time, swell, flat):
         curvature, twist, steepest = curvature + bow, twist + bow * k, max(steepest, k)
         hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
         if local.fits(amplitude, k * radius, radius, many):
-            local.add_series(flat, local.DEGREE, crest, slope, kx, ky)
+            local.add_series(flat, 0, local.DEGREE, crest, slope, kx, ky)
             continue
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
         swell[near, 0], swell[near, 1], swell[near, 2], swell[near, 3], swell[near, 4] = crest, slope, k0, k1, k2

@@ -6,7 +6,8 @@ A (k r)^(DEGREE + 1) / (DEGREE + 1)! within a radius r; waves that are too short
 they are. Pressure is likewise one in x, y and the height under the surface: with its Laplacian
 zero, all of it follows from two layers, its value on a level and its slope there.
 
-The coefficients of x^m y^n stand in order of m, then n; those of z^p x^m y^n of p, then m, then n.
+The coefficients of x^m y^n stand in order of m, then n; those of z^p x^m y^n of p, then m, then n. All that
+is gathered for a hull stands in one row of numbers, which costs less to hand on than several.
 """
 
 import math
@@ -26,6 +27,12 @@ FLAT = (DEGREE + 1) * (DEGREE + 2) // 2
 SOLID = FLAT * (DEGREE + 3) // 3
 """Coefficients of one in x, y, z."""
 _FACTORIAL = math.factorial(DEGREE + 1)
+_INVERSE = tuple(1.0 / n for n in range(1, DEGREE + 2))
+COUNT, MANY, X, Y, MIDDLE, DEPTH, SURFACE = range(7)
+"""In such a row: how many waves are near, and are in all; the middle, its height under the surface as Wheeler
+stretches it, and the depth of the water; and the polynomials of elevation and of pressure, and the near waves."""
+PRESSURE = SURFACE + FLAT
+NEAR = PRESSURE + SOLID
 
 
 @njit(cache=True, error_model="numpy")
@@ -35,9 +42,9 @@ def fits(amplitude, angle, radius, many):
 
 
 @njit(cache=True, error_model="numpy")
-def add_series(flat, degree, crest, slope, kx, ky):
+def add_series(flat, start, degree, crest, slope, kx, ky):
     """Add a wave with A cos and A sin of its phase at the middle to coefficients, in x and y to a degree."""
-    i = 0
+    i = start
     x = 1.0
     for m in range(degree + 1):
         # derivatives by the phase go round: cos, -sin, -cos, sin
@@ -49,15 +56,15 @@ def add_series(flat, degree, crest, slope, kx, ky):
         for n in range(degree - m + 1):
             flat[i] += one * y
             one, two = two, -one
-            y *= ky / (n + 1)
+            y *= ky * _INVERSE[n]
             i += 1
-        x *= kx / (m + 1)
+        x *= kx * _INVERSE[m]
 
 
 @njit(cache=True, error_model="numpy")
-def at(flat, x, y):
-    """A polynomial."""
-    i = FLAT
+def at(flat, start, x, y):
+    """A polynomial whose coefficients begin somewhere."""
+    i = start + FLAT
     total = 0.0
     for m in range(DEGREE, -1, -1):
         row = 0.0
@@ -135,9 +142,9 @@ def on_ray(ray, u):
 
 
 @njit(cache=True, error_model="numpy")
-def deepen(solid):
+def deepen(solid, start):
     """The layers z^2 and up of a polynomial without a Laplacian, from its layers z^0 and z^1."""
-    below, size = 0, FLAT
+    below, size = start, FLAT
     for p in range(2, DEGREE + 1):
         # layers of degree DEGREE - p + 2, DEGREE - p + 1 and DEGREE - p
         above = below + size
@@ -160,9 +167,9 @@ def _place(degree, m, n):
 
 
 @njit(cache=True, error_model="numpy")
-def solid_at(solid, x, y, z):
+def solid_at(solid, start, x, y, z):
     """A polynomial in x, y, z."""
-    i = SOLID
+    i = start + SOLID
     whole = 0.0
     for p in range(DEGREE, -1, -1):
         total = 0.0
@@ -177,17 +184,15 @@ def solid_at(solid, x, y, z):
 
 
 @njit(cache=True, error_model="numpy")
-def gather(waves, x, y, z, time, radius, dynamic, near, flat, solid):
-    """Bring the waves to a hull within a radius of a place, given from the still level.
+def gather(waves, x, y, z, time, radius, dynamic, sea):
+    """Bring the waves to a hull within a radius of a place, given from the still level, into a row `sea`.
 
-    Waves that the polynomials do not hold are copied to `near`; all others go into `flat`, and with
-    `dynamic` into `solid`. Gives how many are near; if fewer than all, the height of the middle under
-    the surface as Wheeler stretches it; and the depth of the water there.
+    Waves that the polynomials do not hold are copied as they are; all others go into that of the
+    surface, and with `dynamic` into that of the pressure. The row has NEAR + 6 numbers for each wave.
     """
     many = waves.shape[0]
-    flat[:] = 0.0
-    count, depth = 0, waves[0, 5] if many else math.inf
-    eta = 0.0
+    sea[:NEAR] = 0.0
+    count, depth, eta = 0, waves[0, 5] if many else math.inf, 0.0
     for w in range(many):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
         phase = kx * x + ky * y - waves[w, 3] * time + waves[w, 4]
@@ -195,14 +200,16 @@ def gather(waves, x, y, z, time, radius, dynamic, near, flat, solid):
         eta += crest
         k = math.sqrt(kx * kx + ky * ky)
         if fits(amplitude, 1.2 * k * radius, radius, many) and (waves[w, 5] == depth or k == 0.0):
-            add_series(flat, DEGREE, crest, slope, kx, ky)
+            add_series(sea, SURFACE, DEGREE, crest, slope, kx, ky)
         else:
-            near[count, :] = waves[w, :]
+            for c in range(6):
+                sea[NEAR + 6 * count + c] = waves[w, c]
             count += 1
+    sea[COUNT], sea[MANY], sea[X], sea[Y], sea[DEPTH] = count, many, x, y, depth
     if count == many or not dynamic:
-        return count, 0.0, depth
+        return
     below = stretched(z, eta, depth)
-    solid[:] = 0.0
+    sea[MIDDLE] = below
     for w in range(many):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
         k = math.sqrt(kx * kx + ky * ky)
@@ -211,36 +218,36 @@ def gather(waves, x, y, z, time, radius, dynamic, near, flat, solid):
         phase = kx * x + ky * y - waves[w, 3] * time + waves[w, 4]
         even, odd = fade(k, waves[w, 5], below)
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
-        add_series(solid, DEGREE, even * crest, even * slope, kx, ky)
-        add_series(solid[FLAT:], DEGREE - 1, k * odd * crest, k * odd * slope, kx, ky)
-    deepen(solid)
-    return count, below, depth
+        add_series(sea, PRESSURE, DEGREE, even * crest, even * slope, kx, ky)
+        add_series(sea, PRESSURE + FLAT, DEGREE - 1, k * odd * crest, k * odd * slope, kx, ky)
+    deepen(sea, PRESSURE)
 
 
 @njit(cache=True, error_model="numpy")
 def surface(sea, x, y, time):
     """Elevation at a place, of what was gathered."""
-    near, count, many, flat, _, x0, y0, _, _ = sea
-    eta = at(flat, x - x0, y - y0) if count < many else 0.0
+    count = int(sea[COUNT])
+    eta = at(sea, SURFACE, x - sea[X], y - sea[Y]) if sea[COUNT] < sea[MANY] else 0.0
     for w in range(count):
-        eta += near[w, 0] * math.cos(near[w, 1] * x + near[w, 2] * y - near[w, 3] * time + near[w, 4])
+        i = NEAR + 6 * w
+        eta += sea[i] * math.cos(sea[i + 1] * x + sea[i + 2] * y - sea[i + 3] * time + sea[i + 4])
     return eta
 
 
 @njit(cache=True, error_model="numpy")
 def head(sea, x, y, z, time, dynamic):
-    """`waves.head` of what was gathered: (near, their count, count of all, flat, solid, x, y, middle, depth)."""
-    near, count, many, _, solid, x0, y0, middle, depth = sea
+    """`waves.head` of what was gathered."""
     eta = surface(sea, x, y, time)
     if not dynamic:
         return eta - z
     total = -z
-    if count < many:
-        total += solid_at(solid, x - x0, y - y0, stretched(z, eta, depth) - middle)
-    for w in range(count):
+    if sea[COUNT] < sea[MANY]:
+        total += solid_at(sea, PRESSURE, x - sea[X], y - sea[Y], stretched(z, eta, sea[DEPTH]) - sea[MIDDLE])
+    for w in range(int(sea[COUNT])):
+        i = NEAR + 6 * w
         a = eta
-        if many > 1:
-            a = near[w, 0] * math.cos(near[w, 1] * x + near[w, 2] * y - near[w, 3] * time + near[w, 4])
-        k = math.hypot(near[w, 1], near[w, 2])
-        total += a * fade(k, near[w, 5], stretched(z, eta, near[w, 5]))[0]
+        if sea[MANY] > 1.0:
+            a = sea[i] * math.cos(sea[i + 1] * x + sea[i + 2] * y - sea[i + 3] * time + sea[i + 4])
+        k = math.sqrt(sea[i + 1] * sea[i + 1] + sea[i + 2] * sea[i + 2])
+        total += a * fade(k, sea[i + 5], stretched(z, eta, sea[i + 5]))[0]
     return total

@@ -190,9 +190,8 @@ def press_hulls(
     out,  # (h, 6) force over rho g [m^3] and torque over rho g about the frame's origin [m^4], world frame
 ):
     """The pressure of the water on the wet side of each hull."""
-    many = waves.shape[0]
     most = _typical(waves)
-    near, flat, solid = np.empty((many, 6)), np.empty(local.FLAT), np.empty(local.SOLID)
+    sea = np.empty(local.NEAR + 6 * waves.shape[0])
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
         out[h, :] = 0.0
@@ -203,8 +202,7 @@ def press_hulls(
         if level + eta - z <= -radius - spread:
             continue
         steepest = spread / radius
-        count, under, depth = gather(waves, x, y, z - level, time, radius, dynamic, near, flat, solid)
-        sea = (near, count, many, flat, solid, x, y, under, depth)
+        gather(waves, x, y, z - level, time, radius, dynamic, sea)
         fx = fy = fz = tx = ty = tz = 0.0
         f0 = f1 = f2 = t0 = t1 = t2 = 0.0
         i, end = nodes[h], nodes[h + 1]
