@@ -204,19 +204,27 @@ def test_pressure_is_zero_on_an_irregular_surface():
 def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
     rows = Water(waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]).rows
     sea = np.empty(local.NEAR + 6 * len(rows))
-    local.gather(rows, 1.3, -2.0, z, 0.7, radius, True, sea)
+    local.gather(rows, 1.3, -2.0, z, naive.elevation(rows, 1.3, -2.0, 0.7), 0.7, radius, True, sea)
     # the most of the waves are in them
     assert sea[local.COUNT] < len(rows) / 2
     rng = np.random.default_rng(1)
-    for _ in range(200):
-        away = rng.normal(size=3)
-        away *= radius * rng.random() ** (1 / 3) / np.linalg.norm(away)
-        x, y, height = np.array([1.3, -2.0, z]) + away
+    room = np.full((local.ROOM, 200), np.nan)
+    away = rng.normal(size=(200, 3))
+    away *= radius * rng.random((200, 1)) ** (1 / 3) / np.linalg.norm(away, axis=1, keepdims=True)
+    room[:3] = away.T
+    room[2] += z
+    local.heads(sea, room, 200, 0.7, True)
+    for (x, y, height), head in zip(away + [1.3, -2.0, z], room[local.HEAD], strict=True):
         eta = naive.elevation(rows, x, y, 0.7)
-        assert local.surface(sea, x, y, 0.7) == pytest.approx(eta, abs=local.ACCURACY * radius)
+        found, *slope = local.surface(sea, x, y, 0.7)
+        assert found == pytest.approx(eta, abs=local.ACCURACY * radius)
+        step = 1e-4 * radius
+        along = naive.elevation(rows, x + step, y, 0.7) - naive.elevation(rows, x - step, y, 0.7)
+        across = naive.elevation(rows, x, y + step, 0.7) - naive.elevation(rows, x, y - step, 0.7)
+        # the last degree counts once more for each
+        assert slope == pytest.approx([along / (2 * step), across / (2 * step)], abs=local.MOST * local.ACCURACY)
         if height < eta:
-            direct = kernels.head(rows, x, y, height, 0.7, True)
-            assert local.head(sea, x, y, height, 0.7, True) == pytest.approx(direct, abs=local.ACCURACY * radius)
+            assert head == pytest.approx(kernels.head(rows, x, y, height, 0.7, True), abs=local.ACCURACY * radius)
 
 
 @pytest.mark.parametrize("components", [4, 5, 64, 200])

@@ -100,12 +100,13 @@ def _approach(waves, origin, r, middle, time, swell, flat):
     frame (3), and in the world's (2); of those waves that the polynomial `flat` does not hold, see
     `local`. It has what the others add, but for its plane. Gives the elevation over the middle, from
     the still level, its gradient in the hull's frame, a bound of its curvature, how many waves are in
-    `swell`, and by how much the phase of any changes over the hull.
+    `swell`, by how much the phase of any changes over the hull, and the degree of `flat`.
     """
     eta = g0 = g1 = g2 = curvature = twist = steepest = hxx = hxy = hyy = 0.0
     x, y, _ = placed(origin, r, middle[0], middle[1], middle[2])
     radius = math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
     many, near = waves.shape[0], 0
+    degree, limit = local.plan(waves, radius, radius)
     flat[:] = 0.0
     for w in range(many):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
@@ -115,8 +116,8 @@ def _approach(waves, origin, r, middle, time, swell, flat):
         bow = abs(amplitude) * k * k
         curvature, twist, steepest = curvature + bow, twist + bow * k, max(steepest, k)
         hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
-        if local.fits(amplitude, k * radius, radius, many):
-            local.add_series(flat, 0, local.DEGREE, crest, slope, kx, ky)
+        if local.remainder(waves, w, radius) <= limit:
+            local.add_series(flat, 0, degree, crest, slope, kx, ky)
             continue
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
         swell[near, 0], swell[near, 1], swell[near, 2], swell[near, 3], swell[near, 4] = crest, slope, k0, k1, k2
@@ -125,22 +126,22 @@ def _approach(waves, origin, r, middle, time, swell, flat):
         eta += crest
         g0, g1, g2 = g0 - slope * k0, g1 - slope * k1, g2 - slope * k2
     # coefficients of 1, y and x
-    one, sx, sy = flat[0], flat[local.DEGREE + 1], flat[1]
-    flat[0] = flat[1] = flat[local.DEGREE + 1] = 0.0
+    one, sx, sy = flat[0], flat[degree + 1], flat[1]
+    flat[0] = flat[1] = flat[degree + 1] = 0.0
     g0, g1, g2 = g0 + sx * r[0] + sy * r[3], g1 + sx * r[1] + sy * r[4], g2 + sx * r[2] + sy * r[5]
     # that over the middle, and by how much it can differ elsewhere
     over = math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius
-    return eta + one, g0, g1, g2, min(curvature, over), near, steepest * radius
+    return eta + one, g0, g1, g2, min(curvature, over), near, steepest * radius, degree
 
 
 @njit(cache=True, error_model="numpy")
-def _add_rest(vertices, first, last, c0, c1, c2, r, swell, waves, flat, smooth, doubled, depths, room):
+def _add_rest(vertices, first, last, c0, c1, c2, r, swell, waves, flat, degree, smooth, doubled, depths, room):
     """Add to depths under the plane, of vertices from `first` up to `last`, the rest of the elevation."""
     if smooth:
         for n in range(first, last):
             x, y, _ = _turned(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
             room[0, n - first], room[1, n - first] = x, y
-        local.add_at_many(flat, room, last - first, depths)
+        local.add_at_many(flat, 0, degree, room[0], room[1], last - first, room[2], room[3], depths)
     for w in range(waves):
         crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
         middle = k0 * c0 + k1 * c1 + k2 * c2
@@ -167,7 +168,7 @@ SLIM = 1e-3
 
 
 @njit(cache=True, error_model="numpy")
-def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, flat, smooth, ray, panels, doubled):
+def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, flat, degree, smooth, ray, panels, doubled):
     """Of the rest e over the triangle from the middle of the hull to a cut p q, all seen from above.
 
     Gives the integrals of e, x e, y e and (plane + e / 2) e. The plane has the `height` over the
@@ -180,12 +181,12 @@ def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, flat, smooth, ray,
         along, share = _ONE[0] if slim else _TWO[n]
         ex, ey = px + along * (qx - px), py + along * (qy - py)
         if smooth:
-            local.along_ray(flat, ex, ey, ray)
+            local.along_ray(flat, degree, ex, ey, ray)
         for panel in range(panels):
             for out, weight in _FOUR:
                 u = (panel + out) / panels
                 x, y = u * ex, u * ey
-                e = local.on_ray(ray, u) if smooth else 0.0
+                e = local.on_ray(ray, degree, u) if smooth else 0.0
                 for w in range(waves):
                     sine, cosine = bend(swell[w, 5] * x + swell[w, 6] * y, doubled)
                     e += swell[w, 0] * cosine - swell[w, 1] * sine
@@ -209,8 +210,8 @@ def _walk(
     v = lx = ly = lz = q = p = area = i0 = ix = iy = iz = 0.0
     depths = scratch[0]
     c0, c1, c2 = middle[0], middle[1], middle[2]
-    flat, ray = np.empty(local.FLAT), np.empty(local.DEGREE + 1)
-    eta, s0, s1, s2, curvature, many, reach = _approach(waves, origin, r, middle, time, swell, flat)
+    flat, ray = np.empty(local.FLAT), np.empty(local.MOST + 1)
+    eta, s0, s1, s2, curvature, many, reach, degree = _approach(waves, origin, r, middle, time, swell, flat)
     wavy, smooth = waves.shape[0] > 0, many < waves.shape[0]
     doubled, panels = doublings(reach), min(max(1, math.ceil(reach / PANEL)), PANELS)
     # the plane, as the depth under it: d + g (x - c)
@@ -228,7 +229,7 @@ def _walk(
         depth, h0, h1, h2 = plane, g0, g1, g2
         if smooth:
             x, y, _ = _turned(r, y0, y1, y2)
-            e, sx, sy = local.with_gradient(flat, x, y)
+            e, sx, sy = local.with_gradient(flat, 0, degree, x, y)
             depth += e
             h0, h1, h2 = h0 + sx * r[0] + sy * r[3], h1 + sx * r[1] + sy * r[4], h2 + sx * r[2] + sy * r[5]
         for w in range(many):
@@ -272,7 +273,7 @@ def _walk(
         for n in range(base, top):
             depths[n - base] = still + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
         if wavy:
-            _add_rest(vertices, base, top, c0, c1, c2, r, swell, many, flat, smooth, doubled, depths, scratch[1:])
+            _add_rest(vertices, base, top, c0, c1, c2, r, swell, many, flat, degree, smooth, doubled, depths, scratch[1:])
         for f in range(spans[i, 0], spans[i, 1]):
             j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
             w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]
@@ -294,7 +295,9 @@ def _walk(
                 if wavy:
                     px, py, _ = _turned(r, one[0] - c0, one[1] - c1, one[2] - c2)
                     qx, qy, _ = _turned(r, other[0] - c0, other[1] - c1, other[2] - c2)
-                    rest = _waterplane(px, py, qx, qy, height, gx, gy, swell, many, flat, smooth, ray, panels, doubled)
+                    rest = _waterplane(
+                        px, py, qx, qy, height, gx, gy, swell, many, flat, degree, smooth, ray, panels, doubled
+                    )
                     i0, ix, iy, iz = i0 + rest[0], ix + rest[1], iy + rest[2], iz + rest[3]
             v += some[0]
             lx += some[1]

@@ -2,7 +2,8 @@
 
 By a tree of moments: a wet node that is small beside the waves is answered by its moments, with the
 pressure as a quadratic about its middle; elsewhere triangles are cut at the surface and summed by a
-rule of degree 5 (Radon 1948), in pieces no longer than `PIECE` over the largest wave number.
+rule of degree 5 (Radon 1948), in pieces no longer than `PIECE` over the largest wave number. The
+places at which the pressure is needed are gathered, so that the processor works on several at once.
 """
 
 import math
@@ -12,11 +13,13 @@ from numba import njit
 
 from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels.clip import placed
-from buoyancy_mj.kernels.local import gather, head, surface
+from buoyancy_mj.kernels.local import HEAD, ROOM, elevations, gather, heads, surface
 from buoyancy_mj.kernels.waves import swing
 
 SMALL = 0.3
-"""Half the diagonal of a node, times the wave number, for which its moments are enough: to SMALL^3 / 6 of the pressure."""
+"""Half the diagonal of a node, times the typical wave number, for which moments do: to SMALL^3 / 6 of the pressure."""
+POINT = 0.1
+"""Longest edge of a triangle, times the wave number, for which one point is enough, to POINT^2 / 36."""
 TINY = 0.3
 """Longest edge of a triangle, times the wave number, for which three points are enough, to TINY^3 / 200."""
 PIECE = 1.5
@@ -35,36 +38,89 @@ _RULE = (
     (_B, 1.0 - 2.0 * _B, (155.0 + _ROOT) / 1200.0),
 )
 """Barycentric coordinates of the first and the second corner, and weights."""
+_STENCIL = (
+    (0.0, 0.0, 0.0),
+    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
+    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0), (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0), (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
+)  # fmt: skip
+"""Places in a node at which a quadratic is known by its values."""
+PLACES = 208
+"""At which the pressure is found at once: 16 nodes, or 69 triangles."""
+DEPTHS = 16
+"""For which the typical wave number is known."""
 
 
 @njit(cache=True, error_model="numpy")
-def _mean(p, q, o, sea, time, dynamic, most):
-    """Means over a triangle of the pressure head, and of it times place, from the still level."""
+def _strew(p, q, o, area, points, count, sea, origin, time, dynamic, most, sums):
+    """Add the points of a rule over a triangle, from the still level, with their shares of its area; count them.
+
+    When there are more than the room holds, those that wait are summed.
+    """
     longest = max(_length(p, q), _length(q, o), _length(o, p))
+    if most * longest <= POINT:
+        if count == PLACES:
+            count = _sum_up(points, count, sea, origin, time, dynamic, sums)
+        x, y, z = (p[0] + q[0] + o[0]) / 3.0, (p[1] + q[1] + o[1]) / 3.0, (p[2] + q[2] + o[2]) / 3.0
+        _put(points, count, sea, x, y, z, 1.0, area)
+        # the depth in it changes, which turns it
+        dp, dq, do = (z - p[2]) / 12.0, (z - q[2]) / 12.0, (z - o[2]) / 12.0
+        mx = dp * (p[0] - x) + dq * (q[0] - x) + do * (o[0] - x)
+        my = dp * (p[1] - y) + dq * (q[1] - y) + do * (o[1] - y)
+        mz = dp * (p[2] - z) + dq * (q[2] - z) + do * (o[2] - z)
+        sums[3] += my * area[2] - mz * area[1]
+        sums[4] += mz * area[0] - mx * area[2]
+        sums[5] += mx * area[1] - my * area[0]
+        return count + 1
     if most * longest <= TINY:
         # the middles of the edges, exact for quadratics
-        ax, ay, az = 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2])
-        bx, by, bz = 0.5 * (q[0] + o[0]), 0.5 * (q[1] + o[1]), 0.5 * (q[2] + o[2])
-        cx, cy, cz = 0.5 * (o[0] + p[0]), 0.5 * (o[1] + p[1]), 0.5 * (o[2] + p[2])
-        a = head(sea, ax, ay, az, time, dynamic) / 3.0
-        b = head(sea, bx, by, bz, time, dynamic) / 3.0
-        c = head(sea, cx, cy, cz, time, dynamic) / 3.0
-        return a + b + c, a * ax + b * bx + c * cx, a * ay + b * by + c * cy, a * az + b * bz + c * cz
+        if count > PLACES - 3:
+            count = _sum_up(points, count, sea, origin, time, dynamic, sums)
+        _put(points, count, sea, 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2]), 1.0 / 3.0, area)
+        _put(points, count + 1, sea, 0.5 * (q[0] + o[0]), 0.5 * (q[1] + o[1]), 0.5 * (q[2] + o[2]), 1.0 / 3.0, area)
+        _put(points, count + 2, sea, 0.5 * (o[0] + p[0]), 0.5 * (o[1] + p[1]), 0.5 * (o[2] + p[2]), 1.0 / 3.0, area)
+        return count + 3
     n = min(max(1, math.ceil(most * longest / PIECE)), PIECES)
-    m = mx = my = mz = 0.0
     for i in range(n):
         for j in range(n - i):
             # the upright piece, and beside it the one upside down
             for flipped in range(2 if j < n - i - 1 else 1):
+                if count > PLACES - len(_RULE):
+                    count = _sum_up(points, count, sea, origin, time, dynamic, sums)
                 for first, second, weight in _RULE:
                     s, t = (i + first) / n, (j + second) / n
                     if flipped:
                         s, t = (i + 1 - first) / n, (j + 1 - second) / n
                     u = 1.0 - s - t
                     x, y, z = s * p[0] + t * q[0] + u * o[0], s * p[1] + t * q[1] + u * o[1], s * p[2] + t * q[2] + u * o[2]
-                    share = weight * head(sea, x, y, z, time, dynamic)
-                    m, mx, my, mz = m + share, mx + share * x, my + share * y, mz + share * z
-    return m / (n * n), mx / (n * n), my / (n * n), mz / (n * n)
+                    _put(points, count, sea, x, y, z, weight / (n * n), area)
+                    count += 1
+    return count
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _put(points, n, sea, x, y, z, share, area):
+    points[0, n], points[1, n], points[2, n] = x - sea[local.X], y - sea[local.Y], z
+    for c in range(3):
+        points[ROOM + c, n] = share * area[c]
+
+
+@njit(cache=True, error_model="numpy")
+def _sum_up(points, count, sea, origin, time, dynamic, sums):
+    """Add force and torque about the origin of all points that wait; none are left."""
+    heads(sea, points, count, time, dynamic)
+    ox, oy, oz = origin[0] - sea[local.X], origin[1] - sea[local.Y], origin[2]
+    for n in range(count):
+        fx, fy, fz = (
+            points[HEAD, n] * points[ROOM, n],
+            points[HEAD, n] * points[ROOM + 1, n],
+            points[HEAD, n] * points[ROOM + 2, n],
+        )
+        x, y, z = points[0, n] - ox, points[1, n] - oy, points[2, n] - oz
+        sums[0], sums[1], sums[2] = sums[0] + fx, sums[1] + fy, sums[2] + fz
+        sums[3] += y * fz - z * fy
+        sums[4] += z * fx - x * fz
+        sums[5] += x * fy - y * fx
+    return 0
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -78,11 +134,11 @@ def _between(p, q, share):
 
 
 @njit(cache=True, error_model="numpy")
-def _triangle(p, q, o, dp, dq, do, sea, time, dynamic, most):
-    """`_mean` of the wet part of a triangle with depths at its corners, times the part that is wet."""
+def _strew_wet(p, q, o, dp, dq, do, area, points, count, sea, origin, time, dynamic, most, sums):
+    """`_strew` over the wet part of a triangle with depths at its corners."""
     wp, wq, wo = dp > 0.0, dq > 0.0, do > 0.0
     if wp and wq and wo:
-        return _mean(p, q, o, sea, time, dynamic, most)
+        return _strew(p, q, o, area, points, count, sea, origin, time, dynamic, most, sums)
     # turn it so that the first corner is alone on its side
     alone = int(wp) + int(wq) + int(wo) == 1
     if wq == alone and wp != alone and wo != alone:
@@ -92,37 +148,38 @@ def _triangle(p, q, o, dp, dq, do, sea, time, dynamic, most):
     s, t = dp / (dp - dq), dp / (dp - do)
     a, b = _between(p, q, s), _between(p, o, t)
     if alone:
-        m = _mean(p, a, b, sea, time, dynamic, most)
-        return s * t * m[0], s * t * m[1], s * t * m[2], s * t * m[3]
-    one, two = _mean(a, q, o, sea, time, dynamic, most), _mean(a, o, b, sea, time, dynamic, most)
-    f, g = 1.0 - s, s * (1.0 - t)
-    return f * one[0] + g * two[0], f * one[1] + g * two[1], f * one[2] + g * two[2], f * one[3] + g * two[3]
+        return _strew(p, a, b, _part(s * t, area), points, count, sea, origin, time, dynamic, most, sums)
+    count = _strew(a, q, o, _part(1.0 - s, area), points, count, sea, origin, time, dynamic, most, sums)
+    return _strew(a, o, b, _part(s * (1.0 - t), area), points, count, sea, origin, time, dynamic, most, sums)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _part(share, area):
+    return share * area[0], share * area[1], share * area[2]
 
 
 @njit(cache=True, error_model="numpy")
-def _head_at(b, s, x, y, z, origin, r, level, sea, time, dynamic):
-    """Head at a place of a frame: steps x, y, z of size s from b."""
-    wx, wy, wz = placed(origin, r, b[0] + s * x, b[1] + s * y, b[2] + s * z)
-    return head(sea, wx, wy, wz - level, time, dynamic)
-
-
-@njit(cache=True, error_model="numpy")
-def _node(m, b, size, origin, r, level, sea, time, dynamic):
-    """Force and torque of the head over a node with moments m about b, in its frame and about its origin."""
+def _ask(b, size, origin, r, level, sea, asked, count):
+    """Put the places at which the head of a node is needed into a room; count them."""
     s = size / math.sqrt(3.0)
-    p = _head_at(b, s, 0.0, 0.0, 0.0, origin, r, level, sea, time, dynamic)
-    px = _head_at(b, s, 1.0, 0.0, 0.0, origin, r, level, sea, time, dynamic)
-    py = _head_at(b, s, 0.0, 1.0, 0.0, origin, r, level, sea, time, dynamic)
-    pz = _head_at(b, s, 0.0, 0.0, 1.0, origin, r, level, sea, time, dynamic)
-    nx = _head_at(b, s, -1.0, 0.0, 0.0, origin, r, level, sea, time, dynamic)
-    ny = _head_at(b, s, 0.0, -1.0, 0.0, origin, r, level, sea, time, dynamic)
-    nz = _head_at(b, s, 0.0, 0.0, -1.0, origin, r, level, sea, time, dynamic)
-    xy = _head_at(b, s, 1.0, 1.0, 0.0, origin, r, level, sea, time, dynamic)
-    xy += _head_at(b, s, -1.0, -1.0, 0.0, origin, r, level, sea, time, dynamic)
-    xz = _head_at(b, s, 1.0, 0.0, 1.0, origin, r, level, sea, time, dynamic)
-    xz += _head_at(b, s, -1.0, 0.0, -1.0, origin, r, level, sea, time, dynamic)
-    yz = _head_at(b, s, 0.0, 1.0, 1.0, origin, r, level, sea, time, dynamic)
-    yz += _head_at(b, s, 0.0, -1.0, -1.0, origin, r, level, sea, time, dynamic)
+    for n in range(len(_STENCIL)):
+        i, j, k = _STENCIL[n]
+        x, y, z = placed(origin, r, b[0] + s * i, b[1] + s * j, b[2] + s * k)
+        asked[0, count + n], asked[1, count + n], asked[2, count + n] = x - sea[local.X], y - sea[local.Y], z - level
+    return count + len(_STENCIL)
+
+
+@njit(cache=True, error_model="numpy")
+def _node(m, b, head, first, sums):
+    """Add force and torque of the head over a node with moments m about b, in its frame and about its origin.
+
+    The heads at its places stand in a row from `first`.
+    """
+    s = math.sqrt((b[3] * b[3] + b[4] * b[4] + b[5] * b[5]) / 3.0)
+    p, px, nx, py, ny = head[first], head[first + 1], head[first + 2], head[first + 3], head[first + 4]
+    pz, nz = head[first + 5], head[first + 6]
+    xy, xz = head[first + 7] + head[first + 8], head[first + 9] + head[first + 10]
+    yz = head[first + 11] + head[first + 12]
     # its gradient, and half its second derivatives, those across once for both
     step, square = 0.5 / s, 0.5 / (s * s)
     g0, g1, g2 = step * (px - nx), step * (py - ny), step * (pz - nz)
@@ -137,7 +194,19 @@ def _node(m, b, size, origin, r, level, sea, time, dynamic):
     t0 = _lever(m, 1, 2, p, g0, g1, g2) - _lever(m, 2, 1, p, g0, g1, g2)
     t1 = _lever(m, 2, 0, p, g0, g1, g2) - _lever(m, 0, 2, p, g0, g1, g2)
     t2 = _lever(m, 0, 1, p, g0, g1, g2) - _lever(m, 1, 0, p, g0, g1, g2)
-    return f0, f1, f2, t0 + b[1] * f2 - b[2] * f1, t1 + b[2] * f0 - b[0] * f2, t2 + b[0] * f1 - b[1] * f0
+    sums[0], sums[1], sums[2] = sums[0] + f0, sums[1] + f1, sums[2] + f2
+    sums[3] += t0 + b[1] * f2 - b[2] * f1
+    sums[4] += t1 + b[2] * f0 - b[0] * f2
+    sums[5] += t2 + b[0] * f1 - b[1] * f0
+
+
+@njit(cache=True, error_model="numpy")
+def _sum_up_nodes(moments, boxes, nodes, many, asked, sea, time, dynamic, sums):
+    """Add what all nodes that wait have; none are left."""
+    heads(sea, asked, many * len(_STENCIL), time, dynamic)
+    for n in range(many):
+        _node(moments[nodes[n]], boxes[nodes[n]], asked[HEAD], n * len(_STENCIL), sums)
+    return 0
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -160,13 +229,27 @@ def _lever(m, i, c, p, g0, g1, g2):
 
 
 @njit(cache=True, error_model="numpy")
-def _typical(waves):
-    """The wave number [rad/m] of a single wave of the same energy whose third derivatives are as large."""
+def _set_typical(waves, dynamic, typical):
+    """Wave numbers [rad/m] of a single wave as high as all at the surface, whose third derivatives are as large.
+
+    At depths of 0, 1, 2, ... over the first of them: the pressure of short waves fades soonest.
+    """
     energy = bent = 0.0
     for i in range(waves.shape[0]):
         square = waves[i, 0] * waves[i, 0]
         energy, bent = energy + square, bent + square * math.hypot(waves[i, 1], waves[i, 2]) ** 6
-    return (bent / energy) ** (1.0 / 6.0) if energy > 0.0 else 0.0
+    typical[:] = most = (bent / energy) ** (1.0 / 6.0) if energy > 0.0 else 0.0
+    if not dynamic or most == 0.0:
+        return
+    typical[:] = 0.0
+    for i in range(waves.shape[0]):
+        k = math.hypot(waves[i, 1], waves[i, 2])
+        share, fades = waves[i, 0] * waves[i, 0] / energy * k**6, math.exp(-2.0 * k / most)
+        for n in range(len(typical)):
+            typical[n] += share
+            share *= fades
+    for n in range(len(typical)):
+        typical[n] **= 1.0 / 6.0
 
 
 @njit(cache=True, error_model="numpy")
@@ -190,8 +273,14 @@ def press_hulls(
     out,  # (h, 6) force over rho g [m^3] and torque over rho g about the frame's origin [m^4], world frame
 ):
     """The pressure of the water on the wet side of each hull."""
-    most = _typical(waves)
+    typical = np.empty(DEPTHS)
+    _set_typical(waves, dynamic, typical)
     sea = np.empty(local.NEAR + 6 * waves.shape[0])
+    # rooms for the points of triangles, for what nodes ask, and for the corners in a leaf
+    points, asked = np.empty((ROOM + 3, PLACES)), np.empty((ROOM, PLACES))
+    corners = np.empty((ROOM, depths.shape[0]))
+    waiting = np.empty(PLACES // len(_STENCIL), np.int64)
+    sums, turned = np.empty(6), np.empty(6)
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
         out[h, :] = 0.0
@@ -201,53 +290,64 @@ def press_hulls(
         eta, spread = swing(waves, x, y, time, radius)
         if level + eta - z <= -radius - spread:
             continue
-        steepest = spread / radius
-        gather(waves, x, y, z - level, time, radius, dynamic, sea)
-        fx = fy = fz = tx = ty = tz = 0.0
-        f0 = f1 = f2 = t0 = t1 = t2 = 0.0
+        gather(waves, x, y, z - level, eta, time, radius, dynamic, sea)
+        # triangles in the world, nodes in the frame; both about its origin
+        sums[:], turned[:] = 0.0, 0.0
+        base = (origin[0], origin[1], origin[2] - level)
+        count = many = 0
         i, end = nodes[h], nodes[h + 1]
         while i < end:
             e0, e1, e2 = boxes[i, 3], boxes[i, 4], boxes[i, 5]
             x, y, z = placed(origin, r, boxes[i, 0], boxes[i, 1], boxes[i, 2])
             size = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-            depth = level + surface(sea, x, y, time) - z
-            reach = abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2 + steepest * size
+            eta, along, across = surface(sea, x, y, time)
+            # the depth of the middle of the box, and how much less or more any point of it has
+            depth = level + eta - z
+            h0 = along * r[0] + across * r[3] - r[6]
+            h1 = along * r[1] + across * r[4] - r[7]
+            h2 = along * r[2] + across * r[5] - r[8]
+            reach = abs(h0) * e0 + abs(h1) * e1 + abs(h2) * e2 + 0.5 * sea[local.CURVATURE] * size * size
             after = spans[i, 4]
             if depth <= -reach:
                 i = after
                 continue
-            if depth >= reach and most * size <= SMALL and size > 0.0:
-                some = _node(moments[i], boxes[i], size, origin, r, level, sea, time, dynamic)
-                f0, f1, f2 = f0 + some[0], f1 + some[1], f2 + some[2]
-                t0, t1, t2 = t0 + some[3], t1 + some[4], t2 + some[5]
+            wet = depth >= reach
+            most = typical[min(int((depth - reach) * typical[0]), DEPTHS - 1) if wet else 0]
+            if wet and most * size <= SMALL and size > 0.0:
+                if many == waiting.shape[0]:
+                    many = _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)
+                _ask(boxes[i], size, origin, r, level, sea, asked, many * len(_STENCIL))
+                waiting[many] = i
+                many += 1
                 i = after
                 continue
             if after > i + 1:
                 i += 1
                 continue
-            base = spans[i, 2]
-            for n in range(base, spans[i, 3]):
-                x, y, z = placed(origin, r, vertices[n, 0], vertices[n, 1], vertices[n, 2])
-                depths[n - base] = level + surface(sea, x, y, time) - z
+            first, last = spans[i, 2], spans[i, 3]
+            for n in range(0 if wet else last - first):
+                x, y, z = placed(base, r, vertices[first + n, 0], vertices[first + n, 1], vertices[first + n, 2])
+                corners[0, n], corners[1, n], corners[2, n] = x - sea[local.X], y - sea[local.Y], z
+            if not wet:
+                elevations(sea, corners, last - first, time)
+            for n in range(last - first):
+                depths[n] = 1.0 if wet else corners[HEAD, n] - corners[2, n]
             for f in range(spans[i, 0], spans[i, 1]):
                 j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
-                dj, dk, do = depths[j - base], depths[k - base], depths[o - base]
+                dj, dk, do = depths[j - first], depths[k - first], depths[o - first]
                 if dj <= 0.0 and dk <= 0.0 and do <= 0.0:
                     continue
-                p = placed((origin[0], origin[1], origin[2] - level), r, vertices[j, 0], vertices[j, 1], vertices[j, 2])
-                q = placed((origin[0], origin[1], origin[2] - level), r, vertices[k, 0], vertices[k, 1], vertices[k, 2])
-                s = placed((origin[0], origin[1], origin[2] - level), r, vertices[o, 0], vertices[o, 1], vertices[o, 2])
-                m, mx, my, mz = _triangle(p, q, s, dj, dk, do, sea, time, dynamic, most)
-                # from the frame's origin
-                mx, my, mz = mx - origin[0] * m, my - origin[1] * m, mz - (origin[2] - level) * m
-                ax, ay, az = _area(r, areas[f])
-                fx, fy, fz = fx + m * ax, fy + m * ay, fz + m * az
-                tx, ty, tz = tx + my * az - mz * ay, ty + mz * ax - mx * az, tz + mx * ay - my * ax
+                p = placed(base, r, vertices[j, 0], vertices[j, 1], vertices[j, 2])
+                q = placed(base, r, vertices[k, 0], vertices[k, 1], vertices[k, 2])
+                s = placed(base, r, vertices[o, 0], vertices[o, 1], vertices[o, 2])
+                area = _area(r, areas[f])
+                count = _strew_wet(p, q, s, dj, dk, do, area, points, count, sea, base, time, dynamic, most, sums)
             i = after
-        nx, ny, nz = _area(r, (f0, f1, f2))
-        ux, uy, uz = _area(r, (t0, t1, t2))
-        out[h, 0], out[h, 1], out[h, 2] = -(fx + nx), -(fy + ny), -(fz + nz)
-        out[h, 3], out[h, 4], out[h, 5] = -(tx + ux), -(ty + uy), -(tz + uz)
+        _sum_up(points, count, sea, base, time, dynamic, sums)
+        _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)
+        force, torque = _area(r, (turned[0], turned[1], turned[2])), _area(r, (turned[3], turned[4], turned[5]))
+        for c in range(3):
+            out[h, c], out[h, 3 + c] = -(sums[c] + force[c]), -(sums[3 + c] + torque[c])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
