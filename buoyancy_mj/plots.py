@@ -25,14 +25,16 @@ COLOURS: Mapping[str, Colour] = {
 }
 """Of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
-PLOTS = {
-    "height": "height [m]",
-    "force": "force [N]",
-    "volume": "submerged volume [l]",
-    "attitude": "attitude [deg]",
-    "energy": "energy [J]",
+_STATIC = ("/plots/force/weight", "/plots/force/buoyancy")
+PLOTS: Mapping[str, Sequence[str]] = {
+    "height [m]": ["/plots/height/**"],
+    "weight and buoyancy [N]": _STATIC,
+    "other forces [N]": ["/plots/force/**", *(f"- {path}" for path in _STATIC)],
+    "submerged volume [l]": ["/plots/volume/**"],
+    "attitude [deg]": ["/plots/attitude/**"],
+    "energy [J]": ["/plots/energy/**"],
 }
-"""Titles of the plots, from top to bottom."""
+"""What the plots show by their titles, from top to bottom; other forces are small beside the weight."""
 _LINES: Mapping[Line, Colour] = {
     ("height", "centre_of_gravity"): (240, 130, 40),
     ("height", "surface"): (60, 160, 255),
@@ -98,11 +100,12 @@ def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blue
     )
     plots = [
         rrb.TimeSeriesView(
-            origin=f"plots/{plot}",
-            name=name,
-            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=plot != "volume"),
+            origin="plots",
+            contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
+            name=title,
+            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible="/plots/volume/**" not in contents),
         )
-        for plot, name in PLOTS.items()
+        for title, contents in PLOTS.items()
     ]
     texts = rrb.Tabs(
         rrb.TextDocumentView(origin="summary", name="summary"), rrb.TextDocumentView(origin="scene", name="scene")

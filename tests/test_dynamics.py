@@ -253,6 +253,14 @@ def test_a_simulation_is_the_same_with_and_without_its_frames():
     assert np.array_equal(*ends)
 
 
+def test_in_a_long_sea_the_auv_rides_the_surface():
+    frames = list(Simulation(read_scene(catalog.scenes()["auv_sea_state_2"])).frames())
+    late = np.array([(frame.centre_of_mass[2], frame.elevation) for frame in frames if frame.time > 5.0])
+    # waves of 19 m carry a hull of half a metre; what is shorter and its own heave are a little more
+    assert np.corrcoef(late.T)[0, 1] > 0.95
+    assert np.std(late[:, 0]) == pytest.approx(np.std(late[:, 1]), rel=0.05)
+
+
 def test_adrift_the_auv_takes_on_the_current():
     simulation = Simulation(read_scene(catalog.scenes()["auv_current"]))
     places = np.array([(frame.time, *frame.centre_of_mass) for frame in simulation.frames()])

@@ -171,6 +171,16 @@ def test_a_place_that_is_no_folder_is_told(tmp_path):
         Recording(simulation, tmp_path / "file" / "run.rrd")
 
 
+def test_every_load_of_a_sea_is_plotted_by_its_cause(tmp_path):
+    path = tmp_path / "run.rrd"
+    recorded(path, "auv_sea_state_2", ["duration=0.1"])
+    found = entities(rerun("print", "-vv", str(path)).stdout)
+    for cause in ("weight", "buoyancy", "wave_pressure", "drag", "added_mass"):
+        assert f"/plots/force/{cause}" in found, cause
+    recorded(path, "sphere_decay", ["duration=0.1"])
+    assert "/plots/force/radiation" in entities(rerun("print", "-vv", str(path)).stdout)
+
+
 @pytest.mark.parametrize("scene", ["auv_pool", "auv_drop_still"])
 def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
     path = tmp_path / "run.rrd"

@@ -77,7 +77,7 @@ def fade(k, depth, z):
 SHORT = 1.6
 """Angle [rad] for which the series of `bend` hold; twice that, and four times that, by doubling."""
 # one over factorials, of the odd and of the even terms
-_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17 = ((-1) ** n / math.factorial(2 * n + 1) for n in range(1, 9))
+_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17, _S19, _S21 = ((-1) ** n / math.factorial(2 * n + 1) for n in range(1, 11))
 _C2, _C4, _C6, _C8, _C10, _C12, _C14, _C16, _C18 = ((-1) ** n / math.factorial(2 * n) for n in range(1, 10))
 
 
@@ -158,9 +158,19 @@ def add_acceleration(waves, x, y, z, time, out):
 
 @njit(cache=True, error_model="numpy")
 def elevations(waves, x, y, time, out):
-    """`elevation`, written to `out` (n,)."""
+    """`elevation`, written to `out` (n,): several points at once, by cos a = 1 - 2 sin^2 a/2 and the series of the sine."""
     for i in range(x.shape[0]):
-        out[i] = elevation(waves, x[i], y[i], time)
+        out[i] = 0.0
+    for w in range(waves.shape[0]):
+        amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
+        phase = waves[w, 4] - waves[w, 3] * time
+        for i in range(x.shape[0]):
+            turns = (kx * x[i] + ky * y[i] + phase) * (0.5 / math.pi)
+            a = (turns - math.floor(turns + 0.5)) * math.pi
+            q = a * a
+            end = _S13 + q * (_S15 + q * (_S17 + q * (_S19 + q * _S21)))
+            sine = a * (1.0 + q * (_S3 + q * (_S5 + q * (_S7 + q * (_S9 + q * (_S11 + q * end))))))
+            out[i] += amplitude * (1.0 - 2.0 * sine * sine)
 
 
 @njit(cache=True, error_model="numpy")
