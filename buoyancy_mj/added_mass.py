@@ -123,11 +123,16 @@ def ellipsoid(radii: ArrayLike, density: float) -> NDArray[np.float64]:
 
 def _matrix(name: str, value: ArrayLike) -> NDArray[np.float64]:
     """A matrix (6, 6), from one or its diagonal."""
-    given = np.asarray(value, float)
-    if given.size not in (6, 36) or not np.isfinite(given).all():
+    try:
+        given = np.asarray(value, float)
+    except (TypeError, ValueError) as error:
+        raise ModelError(f"the added mass of body '{name}' is {value!r}; it must be 6 numbers or a 6 x 6 matrix") from error
+    if not np.isfinite(given).all():
         raise ModelError(
-            f"the added mass of body '{name}' has {given.size} numbers; it must be 6 finite ones, its diagonal, or all 36"
+            f"the added mass of body '{name}' holds {given[~np.isfinite(given)][0]}; its numbers must be finite"
         )
+    if given.size not in (6, 36):
+        raise ModelError(f"the added mass of body '{name}' has {given.size} numbers; it must be 6, its diagonal, or all 36")
     matrix = np.diag(given.ravel()) if given.size == 6 else given.reshape(6, 6)
     scale = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix)))) + 1e-12
     if (np.abs(matrix - matrix.T) > 1e-6 * scale).any():

@@ -71,6 +71,8 @@ class Drag:
         for name in ("viscous", "radiation", "panels"):
             if not isinstance(getattr(self, name), bool):
                 raise ModelError(f"drag {name} is {getattr(self, name)!r}; it must be true or false")
+        if self.panels and not self.viscous:
+            raise ModelError("drag has panels, but viscous is false, and panels are viscous drag; leave out one of them")
         if self.panels and isinstance(self.viscosity, float) and self.viscosity == 0.0:
             raise ModelError("drag viscosity is 0; panels need one, 1.19e-6 for sea water at 15 degrees Celsius")
         for field in dataclasses.fields(self):

@@ -374,9 +374,10 @@ def test_above_the_water_nothing_is_added():
         ({"boat": DIAGONAL}, "added mass is stated for body 'boat', which has no hull of its own; possible: arm, hull"),
         (
             {"hull": [1, 2, 3]},
-            "the added mass of body 'hull' has 3 numbers; it must be 6 finite ones, its diagonal, or all 36",
+            "the added mass of body 'hull' has 3 numbers; it must be 6, its diagonal, or all 36",
         ),
-        ({"hull": [1, 2, 3, 4, 5, math.nan]}, "it must be 6 finite ones"),
+        ({"hull": [1, 2, 3, 4, 5, math.nan]}, "the added mass of body 'hull' holds nan; its numbers must be finite"),
+        ({"hull": "heavy"}, "the added mass of body 'hull' is 'heavy'; it must be 6 numbers or a 6 x 6 matrix"),
         (
             {"hull": np.eye(6) + np.eye(6, k=1)},
             "the added mass of body 'hull' is not symmetric; average it with its transpose",

@@ -237,6 +237,8 @@ def test_damping_that_makes_no_sense_is_told(custom, message):
 def test_bad_options_of_drag_are_told():
     with pytest.raises(ModelError, match="drag panels is 3; it must be true or false"):
         Drag(panels=3)
+    with pytest.raises(ModelError, match="drag has panels, but viscous is false"):
+        Drag(panels=True, viscous=False)
     with pytest.raises(ModelError, match="drag viscosity is 0; panels need one"):
         Drag(panels=True, viscosity=0.0)
     with pytest.raises(MethodError, match="drag by panels needs the method 'exact', not 'convex_hull'"):
