@@ -110,11 +110,7 @@ def _sum_up(points, count, sea, origin, time, dynamic, sums):
     heads(sea, points, count, time, dynamic)
     ox, oy, oz = origin[0] - sea[local.X], origin[1] - sea[local.Y], origin[2]
     for n in range(count):
-        fx, fy, fz = (
-            points[HEAD, n] * points[ROOM, n],
-            points[HEAD, n] * points[ROOM + 1, n],
-            points[HEAD, n] * points[ROOM + 2, n],
-        )
+        fx, fy, fz = _part(points[HEAD, n], (points[ROOM, n], points[ROOM + 1, n], points[ROOM + 2, n]))
         x, y, z = points[0, n] - ox, points[1, n] - oy, points[2, n] - oz
         sums[0], sums[1], sums[2] = sums[0] + fx, sums[1] + fy, sums[2] + fz
         sums[3] += y * fz - z * fy
@@ -159,14 +155,13 @@ def _part(share, area):
 
 
 @njit(cache=True, error_model="numpy")
-def _ask(b, size, origin, r, level, sea, asked, count):
-    """Put the places at which the head of a node is needed into a room; count them."""
+def _ask(b, size, origin, r, level, sea, asked, first):
+    """Put the places at which the head of a node is needed into a room."""
     s = size / math.sqrt(3.0)
     for n in range(len(_STENCIL)):
         i, j, k = _STENCIL[n]
         x, y, z = placed(origin, r, b[0] + s * i, b[1] + s * j, b[2] + s * k)
-        asked[0, count + n], asked[1, count + n], asked[2, count + n] = x - sea[local.X], y - sea[local.Y], z - level
-    return count + len(_STENCIL)
+        asked[0, first + n], asked[1, first + n], asked[2, first + n] = x - sea[local.X], y - sea[local.Y], z - level
 
 
 @njit(cache=True, error_model="numpy")
@@ -312,7 +307,7 @@ def press_hulls(
                 i = after
                 continue
             wet = depth >= reach
-            most = typical[min(int((depth - reach) * typical[0]), DEPTHS - 1) if wet else 0]
+            most = typical[int(min((depth - reach) * typical[0], DEPTHS - 1.0)) if wet else 0]
             if wet and most * size <= SMALL and size > 0.0:
                 if many == waiting.shape[0]:
                     many = _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)
