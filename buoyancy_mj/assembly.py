@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj import catalog
 from buoyancy_mj.callbacks import PLUGIN, skips_passive
 from buoyancy_mj.choice import body_name
+from buoyancy_mj.coefficients import state_coefficients
 from buoyancy_mj.equilibrium import rest
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, EngineError, ModelError, SceneError, choices
 from buoyancy_mj.geoms import displacing_hulls
@@ -47,6 +48,8 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
     path = catalog.model_path(scene.vehicle, scene.folder)
     spec = vehicle_spec(path)
     _leave_out_dry_land(spec, path, scene.water.level)
+    if scene.coefficients is not None:
+        state_coefficients(spec, scene.coefficients.read(scene.folder))
     bodies = len(spec.bodies)
     if scene.environment is not None:
         place = catalog.environment_path(scene.environment, scene.folder)

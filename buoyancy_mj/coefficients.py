@@ -28,6 +28,37 @@ class Coefficients:
     """Heave [N s/m], roll and pitch [N m s] (3,), about the dataset's centre of rotation."""
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Dataset:
+    """A dataset as a scene names it, see `read_coefficients`."""
+
+    file: str
+    """Where it is; a relative path starts from the scene's folder."""
+    period: float
+    """Of the motion or the waves [s]."""
+    submerged: float = 1.0
+    """Part of the hulls' volume under water in it."""
+    centre: tuple[float, float, float] | None = None
+    """What it rotates about, in the body's frame (3,) [m]; None for what it says itself."""
+    body: str | None = None
+    """The model's name for its only body; None if they are named alike."""
+
+    def read(self, folder: Path) -> dict[str, Coefficients]:
+        """Coefficients of each body, by its name in the model.
+
+        Raises:
+            ModelError: see `read_coefficients`; or a `body` for a dataset of several.
+        """
+        found = read_coefficients(folder / self.file, self.period, submerged=self.submerged, centre=self.centre)
+        if self.body is None:
+            return found
+        if len(found) > 1:
+            raise ModelError(
+                f"'{self.file}' has the bodies {', '.join(found)}; name them as the model does, and give no body"
+            )
+        return {self.body: next(iter(found.values()))}
+
+
 def read_coefficients(
     path: str | Path, period: float, *, submerged: float = 1.0, centre: ArrayLike | None = None
 ) -> dict[str, Coefficients]:
@@ -106,6 +137,8 @@ def state_coefficients(spec: mujoco.MjSpec, coefficients: Mapping[str, Coefficie
 
 def _opened(path: Path) -> Any:
     """A dataset, and that it has what is needed."""
+    if not path.is_file():
+        raise ModelError(f"the dataset '{path}' cannot be read: there is no such file")
     try:
         import xarray
 

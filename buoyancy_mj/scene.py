@@ -9,6 +9,7 @@ from typing import Any
 
 import mujoco
 
+from buoyancy_mj.coefficients import Dataset
 from buoyancy_mj.drag import Drag
 from buoyancy_mj.errors import SceneError, choices
 from buoyancy_mj.exact import Exact
@@ -100,6 +101,8 @@ class Scene:
     """How damping is estimated; None for none."""
     added_mass: str = "model"
     """Where the added mass of the bodies comes from, see `Buoyancy`: model, estimate, none."""
+    coefficients: Dataset | None = None
+    """A potential-flow code's dataset of added mass and radiation damping, for bodies that state none themselves."""
     method: Method = Exact()
     """How the submersion is found."""
     mass: float | None = None
@@ -149,6 +152,9 @@ def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str =
     given["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
     given["start"] = built(Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start")
     given["drag"] = drag_from_table(plain.pop("drag", True), f"{where}: drag")
+    if "coefficients" in plain:
+        place = f"{where}: coefficients"
+        given["coefficients"] = built(Dataset, table_of(plain.pop("coefficients"), place), place)
     given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
     # keys of the scene that are tables of their own are still its keys
     for key in plain:

@@ -1,5 +1,6 @@
 """Datasets of potential-flow codes: Hulme's hemisphere by Capytaine, written and read again."""
 
+import itertools
 import math
 
 import mujoco
@@ -7,8 +8,9 @@ import numpy as np
 import pytest
 import xarray
 
-from buoyancy_mj import Buoyancy, ModelError, read_coefficients, state_coefficients
+from buoyancy_mj import Buoyancy, ModelError, SceneError, Simulation, read_coefficients, state_coefficients
 from buoyancy_mj.coefficients import DOFS
+from buoyancy_mj.scene import scene_from_table
 
 OMEGAS = np.array([1.0, math.sqrt(9.81 / 5.0), 2.0])
 MASS = 1000.0 * 2.0 / 3.0 * math.pi * 125.0
@@ -63,6 +65,36 @@ def test_a_model_takes_them_where_it_states_none_itself(hemisphere):
     assert len(own.numerics) == len(spec.numerics)
     with pytest.raises(ModelError, match="the model has no body 'ball2'; did you mean 'ball'"):
         state_coefficients(spec, {"ball2": found["ball"]})
+
+
+def test_a_scene_names_a_dataset(hemisphere, tmp_path):
+    (tmp_path / "ball.xml").write_text(
+        '<mujoco><worldbody><body name="float"><geom type="sphere" size="5" mass="261800" pos="0 0 1e-3"/></body>'
+        "</worldbody></mujoco>"
+    )
+    (tmp_path / "ball.nc").write_bytes(hemisphere.read_bytes())
+    table = {"title": "a ball", "vehicle": "ball.xml", "start": {"position": [0.0, 0.0, 1.0]}, "duration": 12.0}
+    table["coefficients"] = {"file": "ball.nc", "period": 4.4, "submerged": 0.5, "body": "float"}
+    simulation = Simulation(scene_from_table(table, folder=tmp_path))
+    added = read_coefficients(hemisphere, 4.4, submerged=0.5)["ball"].added_mass[2, 2] / 2
+    frames = list(simulation.frames())
+    heights = np.array([(frame.time, frame.centre_of_mass[2]) for frame in frames])
+    assert "radiation" in frames[-1].loads.by_cause
+    # it bobs with the added mass and the waterplane's stiffness
+    period = 2 * math.pi * math.sqrt((261800 + added) / (1000.0 * 9.81 * math.pi * 25.0))
+    down = [t for (t, z), (_, after) in itertools.pairwise(heights) if z > 0.0 >= after]
+    assert np.diff(down).mean() == pytest.approx(period, rel=0.02)
+
+    def told(message, **changed):
+        with pytest.raises((ModelError, SceneError), match=message):
+            Simulation(scene_from_table(table | {"coefficients": table["coefficients"] | changed}, folder=tmp_path))
+
+    told("the model has no body 'boat'", body="boat")
+    told("none.nc' cannot be read: there is no such file", file="none.nc")
+    told("period is -1.0 s", period=-1.0)
+    told("coefficients: unknown key 'depth'; possible: body, centre, file, period, submerged", depth=3)
+    made(tmp_path / "two.nc", ["left__Heave", "right__Heave"])
+    told("'two.nc' has the bodies left, right; name them as the model does", file="two.nc")
 
 
 def test_the_nearest_frequency_is_taken_and_the_wet_part_divided_out(tmp_path):

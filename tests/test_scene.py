@@ -87,7 +87,7 @@ def test_any_field_can_be_set(folder, setting, look):
     [
         (
             "durations=2",
-            "unknown key 'durations'; did you mean 'duration'? possible: added_mass, cog_shift, drag, duration",
+            "unknown key 'durations'; did you mean 'duration'? possible: added_mass, coefficients, cog_shift, drag",
         ),
         ("water.densty=2", "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level"),
         (
