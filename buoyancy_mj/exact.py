@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MethodError
-from buoyancy_mj.kernels import clip, pressure, waterplane
+from buoyancy_mj.kernels import clip, local, pressure, waterplane
 from buoyancy_mj.mesh import TriMesh, refined
 from buoyancy_mj.tree import Tree, grown
 from buoyancy_mj.water import Water
@@ -84,9 +84,13 @@ class PackedHulls:
         self.water = water
         self.frames = np.asarray(frames, np.int64)
         fills = np.ones(len(meshes)) if fills is None else np.asarray(fills, float)
+        self._waves, self._typical = water.rows, pressure.typical(water.rows)
         self._whole = np.array(
             [
-                [fill * m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents), fill]
+                [
+                    *(fill * m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents), fill),
+                    *local.plan(water.rows, 0.5 * float(np.linalg.norm(m.extents))),
+                ]
                 for m, fill in zip(meshes, fills, strict=True)
             ]
         )
@@ -111,7 +115,6 @@ class PackedHulls:
         vectors = 0.5 * np.cross(b - a, c - a)
         shares = np.repeat(fills, np.diff(firsts))[:, None]
         self._areas = np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)])
-        self._waves = water.rows
         leaves = self._spans[:, 4] == np.arange(len(self._spans)) + 1
         most = int(np.diff(self._spans[leaves, 2:4]).max())
         self._depths, self._swell = np.empty((5, most)), np.empty((len(self._waves), 7))
@@ -119,7 +122,8 @@ class PackedHulls:
         """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
 
     ARRAYS = (
-        "vertices", "faces", "areas", "nodes", "spans", "boxes", "moments", "whole", "frames", "depths", "swell",
+        "vertices", "faces", "areas", "nodes", "spans", "boxes", "moments", "whole", "typical", "frames", "depths",
+        "swell",
     )  # fmt: skip
     """What describes the hulls, and what is worked in, see `kernels.clip.submerge_hulls`."""
 
@@ -177,6 +181,7 @@ class PackedHulls:
             self._boxes,
             self._moments,
             self._whole,
+            self._typical,
             self.frames,
             positions,
             rotations,

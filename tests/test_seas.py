@@ -214,7 +214,8 @@ def test_many_points_at_once_are_summed_as_one_by_one():
 def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
     rows = Water(waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]).rows
     sea = np.empty(local.NEAR + 6 * len(rows))
-    local.gather(rows, 1.3, -2.0, z, naive.elevation(rows, 1.3, -2.0, 0.7), 0.7, radius, True, sea)
+    eta = naive.elevation(rows, 1.3, -2.0, 0.7)
+    local.gather(rows, 1.3, -2.0, z, eta, 0.7, radius, *local.plan(rows, radius), True, sea)
     # the most of the waves are in them
     assert sea[local.COUNT] < len(rows) / 2
     rng = np.random.default_rng(1)

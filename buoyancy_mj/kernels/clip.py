@@ -93,29 +93,25 @@ def _vertical(m, k, r):
 
 
 @njit(cache=True, error_model="numpy")
-def _approach(waves, origin, r, middle, time, swell, flat):
-    """Bring the waves to a hull with its middle and half sides in `middle`, in its own frame.
+def _approach(waves, origin, r, box, degree, limit, time, swell, flat):
+    """Bring the waves to a hull with its middle and half sides in `box`, in its own frame, by its `local.plan`.
 
     Rows of `swell` become A cos and A sin of the phase over the middle, the wave vector in the hull's
     frame (3), and in the world's (2); of those waves that the polynomial `flat` does not hold, see
     `local`. It has what the others add, but for its plane. Gives the elevation over the middle, from
-    the still level, its gradient in the hull's frame, a bound of its curvature, how many waves are in
-    `swell`, by how much the phase of any changes over the hull, and the degree of `flat`.
+    the still level, its gradient in the hull's frame, how many waves are in `swell`, and by how much the
+    phase of any changes over the hull.
     """
-    eta = g0 = g1 = g2 = curvature = twist = steepest = hxx = hxy = hyy = 0.0
-    x, y, _ = placed(origin, r, middle[0], middle[1], middle[2])
-    radius = math.sqrt(middle[3] ** 2 + middle[4] ** 2 + middle[5] ** 2)
+    eta = g0 = g1 = g2 = steepest = 0.0
+    x, y, _ = placed(origin, r, box[0], box[1], box[2])
+    radius = math.sqrt(box[3] ** 2 + box[4] ** 2 + box[5] ** 2)
     many, near = waves.shape[0], 0
-    degree, limit = local.plan(waves, radius, radius)
     flat[:] = 0.0
     for w in range(many):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
-        k = math.sqrt(kx * kx + ky * ky)
         phase = kx * x + ky * y - waves[w, 3] * time + waves[w, 4]
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
-        bow = abs(amplitude) * k * k
-        curvature, twist, steepest = curvature + bow, twist + bow * k, max(steepest, k)
-        hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
+        steepest = max(steepest, math.sqrt(kx * kx + ky * ky))
         if local.remainder(waves, w, radius) <= limit:
             local.add_series(flat, 0, degree, crest, slope, kx, ky)
             continue
@@ -129,9 +125,7 @@ def _approach(waves, origin, r, middle, time, swell, flat):
     one, sx, sy = flat[0], flat[degree + 1], flat[1]
     flat[0] = flat[1] = flat[degree + 1] = 0.0
     g0, g1, g2 = g0 + sx * r[0] + sy * r[3], g1 + sx * r[1] + sy * r[4], g2 + sx * r[2] + sy * r[5]
-    # that over the middle, and by how much it can differ elsewhere
-    over = math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius
-    return eta + one, g0, g1, g2, min(curvature, over), near, steepest * radius, degree
+    return eta + one, g0, g1, g2, near, steepest * radius
 
 
 @njit(cache=True, error_model="numpy")
@@ -201,17 +195,19 @@ def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, flat, degree, smoo
 
 @njit(cache=True, error_model="numpy")
 def _walk(
-    vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, middle, scratch, swell
+    vertices, faces, areas, spans, boxes, moments, start, end, origin, r, level, waves, time, hull, curvature, scratch, swell
 ):  # fmt: skip
     """Volume, first moments about the origin, horizontal and wetted area under the nodes from `start` up to `end`.
 
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their moments.
+    `hull` is the hull's row of `whole`, and `curvature` a bound of the surface's over it.
     """
     v = lx = ly = lz = q = p = area = i0 = ix = iy = iz = 0.0
     depths = scratch[0]
-    c0, c1, c2 = middle[0], middle[1], middle[2]
+    c0, c1, c2 = hull[5], hull[6], hull[7]
+    degree = int(hull[12])
     flat, ray = np.empty(local.FLAT), np.empty(local.MOST + 1)
-    eta, s0, s1, s2, curvature, many, reach, degree = _approach(waves, origin, r, middle, time, swell, flat)
+    eta, s0, s1, s2, many, reach = _approach(waves, origin, r, hull[5:], degree, hull[13], time, swell, flat)
     wavy, smooth = waves.shape[0] > 0, many < waves.shape[0]
     doubled, panels = doublings(reach), min(max(1, math.ceil(reach / PANEL)), PANELS)
     # the plane, as the depth under it: d + g (x - c)
@@ -309,7 +305,7 @@ def _walk(
         i = after
     mx, my, mz = _turned(r, lx, ly, lz)
     cx, cy, _ = _turned(r, c0, c1, c2)
-    fill = middle[6]
+    fill = hull[11]
     i0, ix, iy, iz = fill * i0, fill * ix, fill * iy, fill * iz
     return i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q, -p, area
 
@@ -337,7 +333,8 @@ def submerge_hulls(
     spans,  # (n, 5) of the nodes: first face and last, first vertex and last, the node behind all below; see `tree`
     boxes,  # (n, 6)
     moments,  # (n, 31), likewise but for the last
-    whole,  # (h, 12) what each whole hull displaces, its centroid, its area, middle and half sides of its box, its part
+    whole,  # (h, 14) what each whole hull displaces, its centroid, its area, middle and half sides of its box, its part;
+    #         and its `local.plan`
     frames,  # (h,) row of each hull in positions and rotations
     positions,  # (n, 3) of the frames in the world
     rotations,  # (n, 9) world_from_frame, row-major
@@ -354,7 +351,7 @@ def submerge_hulls(
         # how deep the middle of its box lies, and how much shallower or deeper any point of it can be
         x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
         ex, ey, ez = whole[h, 8], whole[h, 9], whole[h, 10]
-        eta, reach = swing(waves, x, y, time, math.sqrt(ex * ex + ey * ey + ez * ez))
+        eta, reach, curvature = swing(waves, x, y, time, math.sqrt(ex * ex + ey * ey + ez * ez))
         depth = level + eta - z
         reach += abs(r[6]) * ex + abs(r[7]) * ey + abs(r[8]) * ez
         if not math.isfinite(depth):
@@ -370,7 +367,7 @@ def submerge_hulls(
             continue
         v, mx, my, mz, p, area = _walk(
             vertices, faces, areas, spans, boxes, moments, nodes[h], nodes[h + 1], origin, r, level, waves, time,
-            whole[h, 5:], scratch, swell,
+            whole[h], curvature, scratch, swell,
         )  # fmt: skip
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of
         if v >= whole[h, 0]:

@@ -30,10 +30,9 @@ SOLID = FLAT * (MOST + 3) // 3
 """Coefficients of one in x, y, z, at most."""
 _FACTORIAL = float(math.factorial(MOST + 1))
 _INVERSE = tuple(1.0 / n for n in range(1, MOST + 2))
-COUNT, MANY, DEGREE, X, Y, MIDDLE, DEPTH, CURVATURE, SURFACE = range(9)
+COUNT, MANY, DEGREE, X, Y, MIDDLE, DEPTH, SURFACE = range(8)
 """In such a row: how many waves are near, and are in all; the degree; the middle, its height under the surface as
-Wheeler stretches it, and the depth of the water; a bound of the surface's curvature over the hull; the polynomials of
-elevation and of pressure, and the near waves."""
+Wheeler stretches it, and the depth of the water; the polynomials of elevation and of pressure, and the near waves."""
 PRESSURE = SURFACE + FLAT
 NEAR = PRESSURE + SOLID
 HEAD, ETA, BELOW, ROOM = 3, 4, 5, 9
@@ -41,10 +40,10 @@ HEAD, ETA, BELOW, ROOM = 3, 4, 5, 9
 
 
 @njit(cache=True, error_model="numpy")
-def plan(waves, reach, radius):
-    """The degree of the polynomials for phases over `reach`, and up to which remainder they hold a wave, see `remainder`.
+def plan(waves, radius):
+    """The degree of the polynomials around a hull of a radius, and up to which `remainder` they hold a wave.
 
-    All that they leave out is within `ACCURACY` of the radius.
+    All that they leave out is within `ACCURACY` of the radius. It is the same at all times.
     """
     many, allowed = waves.shape[0], ACCURACY * radius
     if many <= FEW:
@@ -54,7 +53,7 @@ def plan(waves, reach, radius):
     while True:
         total = 0.0
         for w in range(many):
-            left = remainder(waves, w, reach)
+            left = remainder(waves, w, radius)
             if left <= limit:
                 total += left
         if total <= allowed:
@@ -63,8 +62,8 @@ def plan(waves, reach, radius):
     # the degree that these need
     left = np.zeros(MOST + 1)
     for w in range(many):
-        if remainder(waves, w, reach) <= limit:
-            angle = math.sqrt(waves[w, 1] * waves[w, 1] + waves[w, 2] * waves[w, 2]) * reach
+        if remainder(waves, w, radius) <= limit:
+            angle = _angle(waves, w, radius)
             power = abs(waves[w, 0]) * angle
             for degree in range(1, MOST + 1):
                 power *= angle * _INVERSE[degree]
@@ -76,10 +75,15 @@ def plan(waves, reach, radius):
 
 
 @njit(cache=True, error_model="numpy")
-def remainder(waves, w, reach):
-    """What a polynomial of degree `MOST` leaves out of a wave, for phases over `reach`."""
-    angle = math.sqrt(waves[w, 1] * waves[w, 1] + waves[w, 2] * waves[w, 2]) * reach
-    return abs(waves[w, 0]) * angle ** (MOST + 1) / _FACTORIAL
+def remainder(waves, w, radius):
+    """What a polynomial of degree `MOST` leaves out of a wave around a hull of a radius."""
+    return abs(waves[w, 0]) * _angle(waves, w, radius) ** (MOST + 1) / _FACTORIAL
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _angle(waves, w, radius):
+    """By how much the phase changes over a path in a hull, and a fifth more for the part of it that is downward."""
+    return 1.2 * math.sqrt(waves[w, 1] * waves[w, 1] + waves[w, 2] * waves[w, 2]) * radius
 
 
 @njit(cache=True, error_model="numpy")
@@ -122,9 +126,17 @@ def with_gradient(flat, start, degree, x, y):
 @njit(cache=True, error_model="numpy")
 def add_at_many(flat, start, degree, x, y, count, row, total, out):
     """Add a polynomial at `count` places to `out`; `row` and `total` are worked in."""
+    _set_at_many(flat, start + (degree + 1) * (degree + 2) // 2, degree, x, y, count, row, total)
+    for v in range(count):
+        out[v] += total[v]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _set_at_many(flat, end, degree, x, y, count, row, total):
+    """A polynomial whose coefficients end somewhere, at many places; gives where they begin."""
+    i = end
     for v in range(count):
         total[v] = 0.0
-    i = start + (degree + 1) * (degree + 2) // 2
     for m in range(degree, -1, -1):
         for v in range(count):
             row[v] = 0.0
@@ -135,8 +147,7 @@ def add_at_many(flat, start, degree, x, y, count, row, total, out):
                 row[v] = row[v] * y[v] + c
         for v in range(count):
             total[v] = total[v] * x[v] + row[v]
-    for v in range(count):
-        out[v] += total[v]
+    return i
 
 
 @njit(cache=True, error_model="numpy")
@@ -199,18 +210,7 @@ def add_solid_at_many(solid, start, degree, x, y, z, count, row, total, whole, o
         whole[v] = 0.0
     i = start + (degree + 1) * (degree + 2) * (degree + 3) // 6
     for p in range(degree, -1, -1):
-        for v in range(count):
-            total[v] = 0.0
-        for m in range(degree - p, -1, -1):
-            for v in range(count):
-                row[v] = 0.0
-            for _ in range(degree - p - m + 1):
-                i -= 1
-                c = solid[i]
-                for v in range(count):
-                    row[v] = row[v] * y[v] + c
-            for v in range(count):
-                total[v] = total[v] * x[v] + row[v]
+        i = _set_at_many(solid, i, degree - p, x, y, count, row, total)
         for v in range(count):
             whole[v] = whole[v] * z[v] + total[v]
     for v in range(count):
@@ -218,8 +218,8 @@ def add_solid_at_many(solid, start, degree, x, y, z, count, row, total, whole, o
 
 
 @njit(cache=True, error_model="numpy")
-def gather(waves, x, y, z, eta, time, radius, dynamic, sea):
-    """Bring the waves to a hull within a radius of a place, given from the still level, into a row `sea`.
+def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, sea):
+    """Bring the waves to a hull within a radius of a place, given from the still level, into a row `sea`, by its `plan`.
 
     Waves that the polynomials do not hold are copied as they are; all others go into that of the
     surface, and with `dynamic` into that of the pressure. The row has NEAR + 6 numbers for each wave;
@@ -228,20 +228,13 @@ def gather(waves, x, y, z, eta, time, radius, dynamic, sea):
     many = waves.shape[0]
     sea[:NEAR] = 0.0
     count, depth = 0, waves[0, 5] if many else math.inf
-    curvature = twist = hxx = hxy = hyy = 0.0
-    # over a path through the water, of which a part is downward
-    reach = 1.2 * radius
-    degree, limit = plan(waves, reach, radius)
     below, layer = stretched(z, eta, depth), (degree + 1) * (degree + 2) // 2
     for w in range(many):
         amplitude, kx, ky = waves[w, 0], waves[w, 1], waves[w, 2]
         phase = kx * x + ky * y - waves[w, 3] * time + waves[w, 4]
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
         k = math.sqrt(kx * kx + ky * ky)
-        bow = abs(amplitude) * k * k
-        curvature, twist = curvature + bow, twist + bow * k
-        hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
-        if remainder(waves, w, reach) > limit or (waves[w, 5] != depth and k > 0.0):
+        if remainder(waves, w, radius) > limit or (waves[w, 5] != depth and k > 0.0):
             for c in range(6):
                 sea[NEAR + 6 * count + c] = waves[w, c]
             count += 1
@@ -251,10 +244,9 @@ def gather(waves, x, y, z, eta, time, radius, dynamic, sea):
             even, odd = fade(k, waves[w, 5], below)
             add_series(sea, PRESSURE, degree, even * crest, even * slope, kx, ky)
             add_series(sea, PRESSURE + layer, degree - 1, k * odd * crest, k * odd * slope, kx, ky)
-    deepen(sea, PRESSURE, degree)
+    if dynamic:
+        deepen(sea, PRESSURE, degree)
     sea[COUNT], sea[MANY], sea[DEGREE], sea[X], sea[Y], sea[MIDDLE], sea[DEPTH] = count, many, degree, x, y, below, depth
-    # that over the middle, and by how much it can differ elsewhere
-    sea[CURVATURE] = min(curvature, math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius)
 
 
 @njit(cache=True, error_model="numpy")

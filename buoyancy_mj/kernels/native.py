@@ -29,7 +29,7 @@ from buoyancy_mj.kernels.memory import (
 
 Water = IntEnum(
     "Water",
-    "vertices faces areas nodes spans boxes moments whole frames waves owners bodies "
+    "vertices faces areas nodes spans boxes moments whole typical frames waves owners bodies "
     "damped volumes linear quadratic coupled matrices radiation panels "
     "members member_starts massive massive_volumes added sea current offsets pool links",
     start=0,
@@ -141,6 +141,7 @@ def _evaluate(model, data, water, scratch, record):
             grid(water, Water.boxes),
             grid(water, Water.moments),
             grid(water, Water.whole),
+            row(water, Water.typical),
             words(water, Water.frames),
             geom_xpos,
             doubles(word(data + offsets[Offset.geom_xmat]), ngeom, 9),

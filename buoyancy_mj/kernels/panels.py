@@ -8,7 +8,7 @@ from numba import njit
 from buoyancy_mj.kernels.clip import placed
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.damping import relative_velocity, rigid_body
-from buoyancy_mj.kernels.waves import add_velocity
+from buoyancy_mj.kernels.waves import add_velocity, tangent
 
 LEAST_REYNOLDS = 1e4
 """Below it the line of the ITTC is taken no further: flow there is not turbulent."""
@@ -65,17 +65,17 @@ def add_panels(
         water[:] = 0.0
         relative_velocity(r, at, cvel[b], subtree_com[roots[b]], water, v)
         vx, vy, vz = placed((0.0, 0.0, 0.0), r, v[0], v[1], v[2])
-        any_wet = False
+        fastest = -1.0
         for h in range(owners.shape[0]):
             if owners[h] != b or not wet[h, 0] > 0.0:
                 continue
-            any_wet = True
             origin, turn = positions[frames[h]], rotations[frames[h]]
             x, y, _ = placed(origin, turn, whole[h, 5], whole[h, 6], whole[h, 7])
-            eta, gx, gy = _tangent(waves, x, y, time)
+            eta, gx, gy = tangent(waves, x, y, time)
             set_current(current, level - wet[h, 3], time, water)
             add_velocity(waves, wet[h, 1], wet[h, 2], wet[h, 3] - level, time, water)
             speed = math.sqrt((vx - water[0]) ** 2 + (vy - water[1]) ** 2 + (vz - water[2]) ** 2)
+            fastest = max(fastest, speed)
             reynolds = max(speed * panels[n, 2] / panels[n, 3], LEAST_REYNOLDS)
             friction = 0.075 / (math.log10(reynolds) - 2.0) ** 2
             i = nodes[h]
@@ -93,13 +93,10 @@ def add_panels(
                 dq = level + eta + gx * (qx - x) + gy * (qy - y) - qz
                 do = level + eta + gx * (ox - x) + gy * (oy - y) - oz
                 share = _wet_share(dp, dq, do)
-                if share == 0.0:
-                    continue
-                length = areas[t, 3]
-                if length == 0.0:
-                    continue
                 nx, ny, nz = placed((0.0, 0.0, 0.0), turn, areas[t, 0], areas[t, 1], areas[t, 2])
                 size = math.sqrt(nx * nx + ny * ny + nz * nz)
+                if share == 0.0 or size == 0.0:
+                    continue
                 nx, ny, nz = nx / size, ny / size, nz / size
                 cx, cy, cz = (px + qx + ox) / 3.0 - at[0], (py + qy + oy) / 3.0 - at[1], (pz + qz + oz) / 3.0 - at[2]
                 wx, wy, wz = cvel[b, 0], cvel[b, 1], cvel[b, 2]
@@ -113,7 +110,7 @@ def add_panels(
                 fx, fy, fz = -along * tx - square * nx, -along * ty - square * ny, -along * tz - square * nz
                 f[0], f[1], f[2] = f[0] + fx, f[1] + fy, f[2] + fz
                 f[3], f[4], f[5] = f[3] + cy * fz - cz * fy, f[4] + cz * fx - cx * fz, f[5] + cx * fy - cy * fx
-        if not any_wet:
+        if fastest < 0.0:
             continue
         # its power over a timestep, beside what the body's motion relative to the water holds
         mass, inertias = rigid_body(
@@ -122,23 +119,11 @@ def add_panels(
         least = min(inertias[0], inertias[1], inertias[2])
         push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
         twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
-        ux, uy, uz = vx - water[0], vy - water[1], vz - water[2]
-        motion = mass * (ux * ux + uy * uy + uz * uz) + least * (cvel[b, 0] ** 2 + cvel[b, 1] ** 2 + cvel[b, 2] ** 2)
+        motion = mass * fastest * fastest + least * (cvel[b, 0] ** 2 + cvel[b, 1] ** 2 + cvel[b, 2] ** 2)
         change = (push / mass + twist / least) / (rate * rate) if least > 0.0 and mass > 0.0 else math.inf
         held = math.sqrt(motion / change) if change > motion else 1.0
         for c in range(6):
             out[b, c] += held * f[c]
-
-
-@njit(cache=True, error_model="numpy")
-def _tangent(waves, x, y, time):
-    """Elevation over the still level at a place, and its gradient."""
-    eta = gx = gy = 0.0
-    for w in range(waves.shape[0]):
-        angle = waves[w, 1] * x + waves[w, 2] * y - waves[w, 3] * time + waves[w, 4]
-        slope = waves[w, 0] * math.sin(angle)
-        eta, gx, gy = eta + waves[w, 0] * math.cos(angle), gx - waves[w, 1] * slope, gy - waves[w, 2] * slope
-    return eta, gx, gy
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels.clip import placed
@@ -223,28 +224,18 @@ def _lever(m, i, c, p, g0, g1, g2):
     return p * m[3 + 3 * i + c] + g0 * m[x + c] + g1 * m[y + c] + g2 * m[z + c]
 
 
-@njit(cache=True, error_model="numpy")
-def _set_typical(waves, dynamic, typical):
-    """Wave numbers [rad/m] of a single wave as high as all at the surface, whose third derivatives are as large.
+def typical(waves: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Wave numbers (DEPTHS,) [rad/m] of a single wave as high as all at the surface, whose third derivatives are as large.
 
     At depths of 0, 1, 2, ... over the first of them: the pressure of short waves fades soonest.
     """
-    energy = bent = 0.0
-    for i in range(waves.shape[0]):
-        square = waves[i, 0] * waves[i, 0]
-        energy, bent = energy + square, bent + square * math.hypot(waves[i, 1], waves[i, 2]) ** 6
-    typical[:] = most = (bent / energy) ** (1.0 / 6.0) if energy > 0.0 else 0.0
-    if not dynamic or most == 0.0:
-        return
-    typical[:] = 0.0
-    for i in range(waves.shape[0]):
-        k = math.hypot(waves[i, 1], waves[i, 2])
-        share, fades = waves[i, 0] * waves[i, 0] / energy * k**6, math.exp(-2.0 * k / most)
-        for n in range(len(typical)):
-            typical[n] += share
-            share *= fades
-    for n in range(len(typical)):
-        typical[n] **= 1.0 / 6.0
+    square, k = waves[:, 0] ** 2, np.hypot(waves[:, 1], waves[:, 2])
+    if not square.sum() > 0.0 or not k.any():
+        return np.zeros(DEPTHS)
+    bent = square / square.sum() * k**6
+    fades = np.exp(-2.0 * np.outer(np.arange(DEPTHS), k) / bent.sum() ** (1.0 / 6.0))
+    numbers: NDArray[np.float64] = (fades @ bent) ** (1.0 / 6.0)
+    return numbers
 
 
 @njit(cache=True, error_model="numpy")
@@ -257,6 +248,7 @@ def press_hulls(
     boxes,
     moments,
     whole,
+    typical,  # (DEPTHS,) see `typical`
     frames,
     positions,
     rotations,
@@ -268,8 +260,6 @@ def press_hulls(
     out,  # (h, 6) force over rho g [m^3] and torque over rho g about the frame's origin [m^4], world frame
 ):
     """The pressure of the water on the wet side of each hull."""
-    typical = np.empty(DEPTHS)
-    _set_typical(waves, dynamic, typical)
     sea = np.empty(local.NEAR + 6 * waves.shape[0])
     # rooms for the points of triangles, for what nodes ask, and for the corners in a leaf
     points, asked = np.empty((ROOM + 3, PLACES)), np.empty((ROOM, PLACES))
@@ -282,10 +272,10 @@ def press_hulls(
         # what is dry needs no waves
         x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
         radius = math.sqrt(whole[h, 8] ** 2 + whole[h, 9] ** 2 + whole[h, 10] ** 2)
-        eta, spread = swing(waves, x, y, time, radius)
+        eta, spread, curvature = swing(waves, x, y, time, radius)
         if level + eta - z <= -radius - spread:
             continue
-        gather(waves, x, y, z - level, eta, time, radius, dynamic, sea)
+        gather(waves, x, y, z - level, eta, time, radius, int(whole[h, 12]), whole[h, 13], dynamic, sea)
         # triangles in the world, nodes in the frame; both about its origin
         sums[:], turned[:] = 0.0, 0.0
         base = (origin[0], origin[1], origin[2] - level)
@@ -301,13 +291,13 @@ def press_hulls(
             h0 = along * r[0] + across * r[3] - r[6]
             h1 = along * r[1] + across * r[4] - r[7]
             h2 = along * r[2] + across * r[5] - r[8]
-            reach = abs(h0) * e0 + abs(h1) * e1 + abs(h2) * e2 + 0.5 * sea[local.CURVATURE] * size * size
+            reach = abs(h0) * e0 + abs(h1) * e1 + abs(h2) * e2 + 0.5 * curvature * size * size
             after = spans[i, 4]
             if depth <= -reach:
                 i = after
                 continue
             wet = depth >= reach
-            most = typical[int(min((depth - reach) * typical[0], DEPTHS - 1.0)) if wet else 0]
+            most = typical[int(min((depth - reach) * typical[0], DEPTHS - 1.0)) if wet and dynamic else 0]
             if wet and most * size <= SMALL and size > 0.0:
                 if many == waiting.shape[0]:
                     many = _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)

@@ -20,19 +20,33 @@ def elevation(waves, x, y, time):
 
 
 @njit(cache=True, error_model="numpy")
+def tangent(waves, x, y, time):
+    """Elevation over the still level at a place, and its gradient."""
+    eta = along = across = 0.0
+    for i in range(waves.shape[0]):
+        angle = waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4]
+        slope = waves[i, 0] * math.sin(angle)
+        eta, along, across = eta + waves[i, 0] * math.cos(angle), along - waves[i, 1] * slope, across - waves[i, 2] * slope
+    return eta, along, across
+
+
+@njit(cache=True, error_model="numpy")
 def swing(waves, x, y, time, radius):
-    """Elevation at a place over the still level, and how much it can differ within a radius of it."""
-    eta = along = across = height = steepness = curvature = 0.0
+    """Elevation at a place over the still level, and within a radius how much it can differ and be curved."""
+    eta = along = across = height = steepness = curvature = twist = hxx = hxy = hyy = 0.0
     for i in range(waves.shape[0]):
         a, kx, ky = waves[i, 0], waves[i, 1], waves[i, 2]
         angle = kx * x + ky * y - waves[i, 3] * time + waves[i, 4]
-        slope = a * math.sin(angle)
-        eta, along, across = eta + a * math.cos(angle), along - kx * slope, across - ky * slope
+        crest, slope = a * math.cos(angle), a * math.sin(angle)
+        eta, along, across = eta + crest, along - kx * slope, across - ky * slope
+        hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
         k = math.sqrt(kx * kx + ky * ky)
         a = abs(a)
-        height, steepness, curvature = height + a, steepness + a * k, curvature + a * k * k
+        height, steepness, curvature, twist = height + a, steepness + a * k, curvature + a * k * k, twist + a * k * k * k
+    # that at the place, and by how much it can differ elsewhere
+    curvature = min(curvature, math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius)
     steepness = min(steepness, math.hypot(along, across) + curvature * radius)
-    return eta, min(2.0 * height, steepness * radius)
+    return eta, min(2.0 * height, steepness * radius), curvature
 
 
 @njit(cache=True, error_model="numpy")
@@ -177,11 +191,7 @@ def elevations(waves, x, y, time, out):
 def slopes(waves, x, y, time, out):
     """Gradient of the elevation, written to `out` (n, 2)."""
     for i in range(x.shape[0]):
-        out[i, 0] = out[i, 1] = 0.0
-        for w in range(waves.shape[0]):
-            angle = waves[w, 1] * x[i] + waves[w, 2] * y[i] - waves[w, 3] * time + waves[w, 4]
-            out[i, 0] -= waves[w, 0] * waves[w, 1] * math.sin(angle)
-            out[i, 1] -= waves[w, 0] * waves[w, 2] * math.sin(angle)
+        _, out[i, 0], out[i, 1] = tangent(waves, x[i], y[i], time)
 
 
 @njit(cache=True, error_model="numpy")
