@@ -78,63 +78,37 @@ def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight:
 
 def _slow_down(acting: Acting, slow: Damping, model: mujoco.MjModel, data: mujoco.MjData, record: Record) -> None:
     """Drag and the damping by waves made."""
-    rigid = (slow.members, slow.member_starts, model.body_mass, model.body_inertia)
-    moving = (data.ximat, data.xmat, data.cvel, data.subtree_com, model.body_rootid, acting.water.level, acting.rows)
-    current, step = acting.current, model.opt.timestep
-    drag = record.causes["drag"]
-    drag[:] = 0.0
-    damping.add_drag(
-        record.centres,
+    moving = damping.Moving(
         slow.bodies,
-        slow.volumes,
-        slow.linear,
-        slow.quadratic,
-        slow.coupled,
-        slow.matrices,
-        *rigid,
+        slow.members,
+        slow.member_starts,
+        model.body_mass,
+        model.body_inertia,
         data.xpos,
         data.xipos,
-        *moving,
-        current,
+        data.ximat,
+        data.xmat,
+        data.cvel,
+        data.subtree_com,
+        model.body_rootid,
+        acting.water.level,
+        acting.rows,
+        acting.current,
         data.time,
-        step,
-        drag,
+        model.opt.timestep,
     )
+    drag = record.causes["drag"]
+    drag[:] = 0.0
+    damping.add_drag(moving, record.centres, slow.volumes, slow.linear, slow.quadratic, slow.coupled, slow.matrices, drag)
     if len(slow.panels):
         assert isinstance(acting.packed, PackedHulls)
-        panels.add_panels(
-            *acting.packed.triangles,
-            data.geom_xpos,
-            data.geom_xmat,
-            record.results,
-            acting.owners,
-            slow.bodies,
-            slow.panels,
-            *rigid,
-            data.xipos,
-            *moving,
-            current,
-            data.time,
-            step,
-            drag,
-        )
+        places = data.geom_xpos, data.geom_xmat
+        panels.add_panels(moving, *acting.packed.triangles, *places, record.results, acting.owners, slow.panels, drag)
     record.total += drag
     if slow.radiates:
         made = record.causes["radiation"]
         made[:] = 0.0
-        damping.add_radiation(
-            record.results,
-            acting.owners,
-            record.centres,
-            slow.bodies,
-            slow.radiation,
-            *rigid,
-            data.xipos,
-            *moving,
-            data.time,
-            step,
-            made,
-        )
+        damping.add_radiation(moving, record.results, acting.owners, record.centres, slow.radiation, made)
         record.total += made
 
 

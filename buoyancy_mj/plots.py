@@ -25,11 +25,11 @@ COLOURS: Mapping[str, Colour] = {
 }
 """Of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
-_STATIC = ("/plots/force/weight", "/plots/force/buoyancy")
+_LARGE = ("/plots/force/weight", "/plots/force/buoyancy")
 PLOTS: Mapping[str, Sequence[str]] = {
     "height [m]": ["/plots/height/**"],
-    "weight and buoyancy [N]": _STATIC,
-    "other forces [N]": ["/plots/force/**", *(f"- {path}" for path in _STATIC)],
+    "weight and buoyancy [N]": _LARGE,
+    "other forces [N]": ["/plots/force/**", *(f"- {path}" for path in _LARGE)],
     "submerged volume [l]": ["/plots/volume/**"],
     "attitude [deg]": ["/plots/attitude/**"],
     "energy [J]": ["/plots/energy/**"],

@@ -16,12 +16,32 @@ MOST_COMPONENTS = 10_000
 """Waves of one sea."""
 CUTOFF = 10.0
 """Highest frequency over that of the peak: above it lies about 1e-4 of the energy."""
+ALPHA = 0.0081
+"""Pierson and Moskowitz's constant of fully developed seas, S = ALPHA g^2 omega^-5 exp(...)."""
 _GRID = 40_001
 """Frequencies, or directions, at which a distribution is summed."""
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class _Sea:
+    """What all irregular seas have."""
+
+    components: int = 64
+    """How many waves."""
+    seed: int = 0
+    """Of phases and directions."""
+    direction: float = 0.0
+    """Where the sea runs to, from x towards y [rad]."""
+    spreading: float = math.inf
+    """Exponent s: infinite for long crests, 10 to 25 for swell, 2 to 5 for wind sea."""
+    depth: float = math.inf
+    """Depth of the water [m]; it shortens the waves, and leaves the spectrum as it is."""
+    gravity: float = GRAVITY
+    """g in the dispersion relation [m/s^2]."""
+
+
 @dataclasses.dataclass(frozen=True)
-class JonswapSea:
+class JonswapSea(_Sea):
     """A sea of the JONSWAP spectrum, and with gamma 1 of Pierson and Moskowitz's, as `components` Airy waves.
 
     S = A alpha omega^-5 exp(-5/4 (omega / omega_p)^-4) gamma^exp(-(omega / omega_p - 1)^2 / (2 sigma^2)), sigma
@@ -44,18 +64,6 @@ class JonswapSea:
     """Tp, of the waves with the most energy [s]."""
     gamma: float = dataclasses.field(default=3.3, kw_only=True)
     """How much the peak stands out of Pierson and Moskowitz's; 1 to 20."""
-    components: int = dataclasses.field(default=64, kw_only=True)
-    """How many waves."""
-    seed: int = dataclasses.field(default=0, kw_only=True)
-    """Of phases and directions."""
-    direction: float = dataclasses.field(default=0.0, kw_only=True)
-    """Where the sea runs to, from x towards y [rad]."""
-    spreading: float = dataclasses.field(default=math.inf, kw_only=True)
-    """Exponent s: infinite for long crests, 10 to 25 for swell, 2 to 5 for wind sea."""
-    depth: float = dataclasses.field(default=math.inf, kw_only=True)
-    """Depth of the water [m]; it shortens the waves, and leaves the spectrum as it is."""
-    gravity: float = dataclasses.field(default=GRAVITY, kw_only=True)
-    """g in the dispersion relation [m/s^2]."""
 
     def __post_init__(self) -> None:
         finite("significant_height", self.significant_height, least=0.0)
@@ -132,7 +140,7 @@ class JonswapSea:
 
 
 @dataclasses.dataclass(frozen=True)
-class PiersonMoskowitzSea:
+class PiersonMoskowitzSea(_Sea):
     """A wind sea of the spectrum of Pierson and Moskowitz (1964): `JonswapSea` with gamma 1.
 
     Without a peak period it is fully developed, alpha = 0.0081: omega_p = (16 alpha g^2 / (5 Hs^2))^(1/4).
@@ -145,18 +153,6 @@ class PiersonMoskowitzSea:
     """Hs, four times the standard deviation of the elevation [m]."""
     peak_period: float = math.nan
     """Tp, of the waves with the most energy [s]; follows from the height if not given."""
-    components: int = dataclasses.field(default=64, kw_only=True)
-    """How many waves."""
-    seed: int = dataclasses.field(default=0, kw_only=True)
-    """Of phases and directions."""
-    direction: float = dataclasses.field(default=0.0, kw_only=True)
-    """Where the sea runs to, from x towards y [rad]."""
-    spreading: float = dataclasses.field(default=math.inf, kw_only=True)
-    """Exponent s, see `JonswapSea`."""
-    depth: float = dataclasses.field(default=math.inf, kw_only=True)
-    """Depth of the water [m]."""
-    gravity: float = dataclasses.field(default=GRAVITY, kw_only=True)
-    """g in the dispersion relation [m/s^2]."""
 
     def __post_init__(self) -> None:
         if isinstance(self.peak_period, float) and math.isnan(self.peak_period):
@@ -180,10 +176,6 @@ class PiersonMoskowitzSea:
     def doubt(self) -> str:
         """What speaks against such a sea in nature, see `JonswapSea.doubt`."""
         return self.as_jonswap.doubt
-
-
-ALPHA = 0.0081
-"""Pierson and Moskowitz's constant of fully developed seas, S = ALPHA g^2 omega^-5 exp(...)."""
 
 
 def _shape(ratio: NDArray[np.float64], gamma: float) -> NDArray[np.float64]:

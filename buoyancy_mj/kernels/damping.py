@@ -1,6 +1,7 @@
 """What slows bodies down in water, by coefficients: damping, and the waves that they make."""
 
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -9,31 +10,54 @@ from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.waves import add_velocity
 
 
+class Moving(NamedTuple):
+    """The bodies that water slows down, how all bodies move, as MuJoCo has it, and the water around them."""
+
+    bodies: Any
+    """(n,) those with hulls."""
+    members: Any
+    """(m,) those and what is welded to each, one after the other."""
+    member_starts: Any
+    """(n + 1,)."""
+    body_mass: Any
+    """(nbody,)."""
+    body_inertia: Any
+    """(nbody, 3)."""
+    xpos: Any
+    """(nbody, 3)."""
+    xipos: Any
+    """(nbody, 3)."""
+    ximat: Any
+    """(nbody, 9)."""
+    xmat: Any
+    """(nbody, 9)."""
+    cvel: Any
+    """(nbody, 6) rotation, then translation at the root's centre of mass."""
+    subtree_com: Any
+    """(nbody, 3)."""
+    roots: Any
+    """(nbody,)."""
+    level: Any
+    """Of the water [m]."""
+    waves: Any
+    """(w, 6), see `waves`."""
+    current: Any
+    """(c, 5), see `currents`."""
+    time: Any
+    """[s]."""
+    timestep: Any
+    """[s]."""
+
+
 @njit(cache=True, error_model="numpy")
 def add_drag(
+    moving,  # `Moving`
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
-    bodies,  # (n,) bodies that have drag
-    volumes,  # (n,) their whole volumes
+    volumes,  # (n,) whole volumes
     linear,  # (n, 6) force and torque per velocity along the body's axes
     quadratic,  # (n, 6) the same per velocity squared
     coupled,  # (n,) 1 where instead both are matrices, about the body's origin
     matrices,  # (n, 72) those, row by row: linear, quadratic
-    members,  # (m,) those bodies and what is welded to each
-    member_starts,  # (n + 1,)
-    body_mass,  # (nbody,)
-    body_inertia,  # (nbody, 3)
-    xpos,  # (nbody, 3)
-    xipos,  # (nbody, 3)
-    ximat,  # (nbody, 9)
-    xmat,  # (nbody, 9)
-    cvel,  # (nbody, 6) MuJoCo's: rotation, then translation at the root's centre of mass
-    subtree_com,  # (nbody, 3)
-    roots,  # (nbody,)
-    level,
-    waves,
-    current,  # (n, 5), see `currents`
-    time,
-    timestep,
     out,  # (nbody, 6)
 ):
     """Add linear and quadratic damping along each body's axes, scaled with the wet fraction of its volume.
@@ -44,23 +68,21 @@ def add_drag(
     there divided by the timestep; and of matrices, scaled by those masses, the norm.
     """
     water, v, m = np.empty(3), np.empty(6), np.empty(6)
-    rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    for n in range(bodies.shape[0]):
-        b = bodies[n]
+    rate = 1.0 / moving.timestep if moving.timestep > 0.0 else math.inf
+    for n in range(moving.bodies.shape[0]):
+        b = moving.bodies[n]
         volume = centres[b, 0]
         if not volume > 0.0:
             continue
         wet = min(volume / volumes[n], 1.0)
-        r = xmat[b]
+        r = moving.xmat[b]
         whole = coupled[n] != 0
-        at = xpos[b] if whole else centres[b, 1:]
-        set_current(current, level - centres[b, 3], time, water)
-        add_velocity(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, water)
-        relative_velocity(r, at, cvel[b], subtree_com[roots[b]], water, v)
-        mass, inertias = rigid_body(
-            members[member_starts[n] : member_starts[n + 1]], body_mass, body_inertia, xipos, ximat, r
-        )
-        m[:3] = _apparent(mass, inertias, at, xipos[b])
+        at = moving.xpos[b] if whole else centres[b, 1:]
+        set_current(moving.current, moving.level - centres[b, 3], moving.time, water)
+        add_velocity(moving.waves, centres[b, 1], centres[b, 2], centres[b, 3] - moving.level, moving.time, water)
+        relative_velocity(moving, b, at, water, v)
+        mass, inertias = rigid_body(moving, n)
+        m[:3] = _apparent(mass, inertias, at, moving.xipos[b])
         m[3], m[4], m[5] = inertias
         if whole:
             norm = 0.0
@@ -77,30 +99,16 @@ def add_drag(
                 d = wet * (linear[n, i] + quadratic[n, i] * abs(v[i]))
                 m[i] = -min(d, m[i] * rate) * v[i]
             f = m[0], m[1], m[2], m[3], m[4], m[5]
-        _add(r, at, xipos[b], f, out[b])
+        _add(r, at, moving.xipos[b], f, out[b])
 
 
 @njit(cache=True, error_model="numpy")
 def add_radiation(
+    moving,
     wet,  # (h, 6) submersion of the hulls
     owners,  # (h,) their bodies
-    centres,  # likewise
-    bodies,
+    centres,
     radiation,  # (n, 4) force per velocity upward, torque per rate of roll and pitch; the waterplane they are of
-    members,
-    member_starts,
-    body_mass,
-    body_inertia,
-    xipos,
-    ximat,
-    xmat,
-    cvel,
-    subtree_com,
-    roots,
-    level,
-    waves,
-    time,
-    timestep,
     out,
 ):
     """Add what the waves that a body makes take from its heave, roll and pitch, scaled with its waterplane.
@@ -108,9 +116,9 @@ def add_radiation(
     At the centroid of what is wet, on the velocity there relative to the waves, held as for `add_drag`.
     """
     water, v = np.empty(3), np.empty(6)
-    rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    for n in range(bodies.shape[0]):
-        b = bodies[n]
+    rate = 1.0 / moving.timestep if moving.timestep > 0.0 else math.inf
+    for n in range(moving.bodies.shape[0]):
+        b = moving.bodies[n]
         if not centres[b, 0] > 0.0 or not radiation[n, 3] > 0.0:
             continue
         area = 0.0
@@ -120,23 +128,22 @@ def add_radiation(
         share = min(max(area / radiation[n, 3], 0.0), 1.0)
         if share == 0.0:
             continue
-        r, at = xmat[b], centres[b, 1:]
+        r, at = moving.xmat[b], centres[b, 1:]
         water[:] = 0.0
-        add_velocity(waves, at[0], at[1], at[2] - level, time, water)
-        relative_velocity(r, at, cvel[b], subtree_com[roots[b]], water, v)
-        mass, inertias = rigid_body(
-            members[member_starts[n] : member_starts[n + 1]], body_mass, body_inertia, xipos, ximat, r
-        )
+        add_velocity(moving.waves, at[0], at[1], at[2] - moving.level, moving.time, water)
+        relative_velocity(moving, b, at, water, v)
+        mass, inertias = rigid_body(moving, n)
         heave = r[6] * v[0] + r[7] * v[1] + r[8] * v[2]
-        up = -min(share * radiation[n, 0], _apparent(mass, inertias, at, xipos[b]) * rate) * heave
+        up = -min(share * radiation[n, 0], _apparent(mass, inertias, at, moving.xipos[b]) * rate) * heave
         roll = -min(share * radiation[n, 1], inertias[0] * rate) * v[3]
         pitch = -min(share * radiation[n, 2], inertias[1] * rate) * v[4]
-        _add(r, at, xipos[b], (up * r[6], up * r[7], up * r[8], roll, pitch, 0.0), out[b])
+        _add(r, at, moving.xipos[b], (up * r[6], up * r[7], up * r[8], roll, pitch, 0.0), out[b])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def relative_velocity(r, at, cvel, com, water, out):
-    """Velocity of a body at a place, relative to the water, and its rates, along the axes r; written to `out` (6,)."""
+def relative_velocity(moving, b, at, water, out):
+    """Velocity of a body at a place, relative to the water, and its rates, along its axes; written to `out` (6,)."""
+    r, cvel, com = moving.xmat[b], moving.cvel[b], moving.subtree_com[moving.roots[b]]
     x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
     ux = cvel[3] + cvel[1] * z - cvel[2] * y - water[0]
     uy = cvel[4] + cvel[2] * x - cvel[0] * z - water[1]
@@ -187,21 +194,24 @@ def _add(r, at, com, f, out):
 
 
 @njit(cache=True, error_model="numpy")
-def rigid_body(members, body_mass, body_inertia, xipos, ximat, r):
-    """Mass of bodies that move as one, and what they oppose to a torque about each axis of the frame r (9,).
+def rigid_body(moving, n):
+    """Mass of a body and what is welded to it, and what they oppose to a torque about each of its axes.
 
     The latter is torque over angular acceleration: one over the diagonal of the inverse inertia.
     """
+    r, xipos = moving.xmat[moving.bodies[n]], moving.xipos
+    members = moving.members[moving.member_starts[n] : moving.member_starts[n + 1]]
     mass = x = y = z = 0.0
     for b in members:
-        m = body_mass[b]
+        m = moving.body_mass[b]
         mass, x, y, z = mass + m, x + m * xipos[b, 0], y + m * xipos[b, 1], z + m * xipos[b, 2]
     if not mass > 0.0:
         return 0.0, (0.0, 0.0, 0.0)
     x, y, z = x / mass, y / mass, z / mass
     xx = yy = zz = xy = xz = yz = 0.0
     for b in members:
-        m, q, i0, i1, i2 = body_mass[b], ximat[b], body_inertia[b, 0], body_inertia[b, 1], body_inertia[b, 2]
+        m, q = moving.body_mass[b], moving.ximat[b]
+        i0, i1, i2 = moving.body_inertia[b, 0], moving.body_inertia[b, 1], moving.body_inertia[b, 2]
         ax, ay, az = xipos[b, 0] - x, xipos[b, 1] - y, xipos[b, 2] - z
         xx += q[0] * q[0] * i0 + q[1] * q[1] * i1 + q[2] * q[2] * i2 + m * (ay * ay + az * az)
         yy += q[3] * q[3] * i0 + q[4] * q[4] * i1 + q[5] * q[5] * i2 + m * (ax * ax + az * az)

@@ -156,9 +156,7 @@ def _evaluate(model, data, water, scratch, record):
         wrenches.add_wave_pressure(
             heads, wet, owners, words(water, Water.frames), geom_xpos, sea[0] * strength, xipos, pushed
         )
-        for b in range(nbody):
-            for i in range(6):
-                total[b, i] += pushed[b, i]
+        _add_to(total, pushed)
     if words(water, Water.damped).shape[0] > 0:
         _slow_down(model, data, water, record, time, xipos, subtree_com, roots)
     if words(water, Water.massive).shape[0] > 0:
@@ -185,49 +183,45 @@ def _evaluate(model, data, water, scratch, record):
 @njit(cache=True, error_model="numpy")
 def _slow_down(model, data, water, record, time, xipos, subtree_com, roots):
     """Add drag and the damping by waves made."""
-    offsets, sea, waves = words(water, Water.offsets), row(water, Water.sea), grid(water, Water.waves)
+    offsets, sea = words(water, Water.offsets), row(water, Water.sea)
     nbody, ngeom = word(model + offsets[Offset.nbody]), word(model + offsets[Offset.ngeom])
     wet, centres, total = grid(record, Record.results), grid(record, Record.centres), grid(record, Record.total)
-    bodies, owners = words(water, Water.damped), words(water, Water.owners)
-    members, member_starts = words(water, Water.members), words(water, Water.member_starts)
-    body_mass = carray(pointer(word(model + offsets[Offset.body_mass])), (nbody,), np.float64)
-    body_inertia = doubles(word(model + offsets[Offset.body_inertia]), nbody, 3)
-    xpos = doubles(word(data + offsets[Offset.xpos]), nbody, 3)
-    ximat = doubles(word(data + offsets[Offset.ximat]), nbody, 9)
-    xmat = doubles(word(data + offsets[Offset.xmat]), nbody, 9)
-    cvel = doubles(word(data + offsets[Offset.cvel]), nbody, 6)
-    current, timestep = grid(water, Water.current), number(model + offsets[Offset.timestep])
+    owners = words(water, Water.owners)
+    moving = damping.Moving(
+        words(water, Water.damped),
+        words(water, Water.members),
+        words(water, Water.member_starts),
+        carray(pointer(word(model + offsets[Offset.body_mass])), (nbody,), np.float64),
+        doubles(word(model + offsets[Offset.body_inertia]), nbody, 3),
+        doubles(word(data + offsets[Offset.xpos]), nbody, 3),
+        xipos,
+        doubles(word(data + offsets[Offset.ximat]), nbody, 9),
+        doubles(word(data + offsets[Offset.xmat]), nbody, 9),
+        doubles(word(data + offsets[Offset.cvel]), nbody, 6),
+        subtree_com,
+        roots,
+        sea[1],
+        grid(water, Water.waves),
+        grid(water, Water.current),
+        time,
+        number(model + offsets[Offset.timestep]),
+    )
     drag = grid(record, Record.drag)
     drag[:, :] = 0.0
     damping.add_drag(
+        moving,
         centres,
-        bodies,
         row(water, Water.volumes),
         grid(water, Water.linear),
         grid(water, Water.quadratic),
         words(water, Water.coupled),
         grid(water, Water.matrices),
-        members,
-        member_starts,
-        body_mass,
-        body_inertia,
-        xpos,
-        xipos,
-        ximat,
-        xmat,
-        cvel,
-        subtree_com,
-        roots,
-        sea[1],
-        waves,
-        current,
-        time,
-        timestep,
         drag,
     )
     sheets = grid(water, Water.panels)
     if sheets.shape[0] > 0:
         panels.add_panels(
+            moving,
             grid(water, Water.vertices),
             corners(water, Water.faces),
             grid(water, Water.areas),
@@ -239,57 +233,23 @@ def _slow_down(model, data, water, record, time, xipos, subtree_com, roots):
             doubles(word(data + offsets[Offset.geom_xmat]), ngeom, 9),
             wet,
             owners,
-            bodies,
             sheets,
-            members,
-            member_starts,
-            body_mass,
-            body_inertia,
-            xipos,
-            ximat,
-            xmat,
-            cvel,
-            subtree_com,
-            roots,
-            sea[1],
-            waves,
-            current,
-            time,
-            timestep,
             drag,
         )
-    for b in range(nbody):
-        for i in range(6):
-            total[b, i] += drag[b, i]
+    _add_to(total, drag)
     made = grid(record, Record.radiation)
-    if made.shape[0] == 0:
-        return
-    made[:, :] = 0.0
-    damping.add_radiation(
-        wet,
-        owners,
-        centres,
-        bodies,
-        grid(water, Water.radiation),
-        members,
-        member_starts,
-        body_mass,
-        body_inertia,
-        xipos,
-        ximat,
-        xmat,
-        cvel,
-        subtree_com,
-        roots,
-        sea[1],
-        waves,
-        time,
-        timestep,
-        made,
-    )
-    for b in range(nbody):
+    if made.shape[0] > 0:
+        made[:, :] = 0.0
+        damping.add_radiation(moving, wet, owners, centres, grid(water, Water.radiation), made)
+        _add_to(total, made)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add_to(total, part):
+    """Add the loads of one cause."""
+    for b in range(total.shape[0]):
         for i in range(6):
-            total[b, i] += made[b, i]
+            total[b, i] += part[b, i]
 
 
 @njit(cache=True, error_model="numpy")
@@ -335,9 +295,7 @@ def _add_mass(model, data, water, record, time):
         time,
         reaction,
     )
-    for b in range(nbody):
-        for i in range(6):
-            total[b, i] += reaction[b, i]
+    _add_to(total, reaction)
     # where the engine goes over a pass again without computing its mass matrix anew, it is heavier already
     count = word(model + offsets[Offset.nC])
     mass = carray(pointer(word(data + offsets[Offset.M])), (count,), np.float64)

@@ -16,6 +16,7 @@ LEAST_REYNOLDS = 1e4
 
 @njit(cache=True, error_model="numpy")
 def add_panels(
+    moving,  # `damping.Moving`
     vertices,  # as for `clip.submerge_hulls`
     faces,
     areas,
@@ -26,25 +27,9 @@ def add_panels(
     positions,
     rotations,
     wet,  # (h, 6) submersion of the hulls
-    owners,  # (h,)
-    bodies,  # likewise
+    owners,  # (h,) their bodies
     panels,  # (n, 5) coefficients of faces that lead and that trail, length [m], viscosity [m^2/s], density; 0 for none
-    members,
-    member_starts,
-    body_mass,
-    body_inertia,
-    xipos,
-    ximat,
-    xmat,
-    cvel,
-    subtree_com,
-    roots,
-    level,
-    waves,
-    current,
-    time,
-    timestep,
-    out,
+    out,  # (nbody, 6)
 ):
     """Add the drag of each wet triangle: pressure by how squarely it meets the flow, and skin friction along it.
 
@@ -54,16 +39,17 @@ def add_panels(
     the middle of the hull. All is held so that its power stops no more than the motion there is.
     """
     water, v, f = np.empty(3), np.empty(6), np.empty(6)
-    rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    for n in range(bodies.shape[0]):
+    rate = 1.0 / moving.timestep if moving.timestep > 0.0 else math.inf
+    level, waves, time = moving.level, moving.waves, moving.time
+    for n in range(moving.bodies.shape[0]):
         density = panels[n, 4]
         if not density > 0.0:
             continue
-        b = bodies[n]
-        r, at = xmat[b], xipos[b]
+        b = moving.bodies[n]
+        r, at, spin = moving.xmat[b], moving.xipos[b], moving.cvel[b]
         f[:] = 0.0
         water[:] = 0.0
-        relative_velocity(r, at, cvel[b], subtree_com[roots[b]], water, v)
+        relative_velocity(moving, b, at, water, v)
         vx, vy, vz = placed((0.0, 0.0, 0.0), r, v[0], v[1], v[2])
         fastest = -1.0
         for h in range(owners.shape[0]):
@@ -72,7 +58,7 @@ def add_panels(
             origin, turn = positions[frames[h]], rotations[frames[h]]
             x, y, _ = placed(origin, turn, whole[h, 5], whole[h, 6], whole[h, 7])
             eta, gx, gy = tangent(waves, x, y, time)
-            set_current(current, level - wet[h, 3], time, water)
+            set_current(moving.current, level - wet[h, 3], time, water)
             add_velocity(waves, wet[h, 1], wet[h, 2], wet[h, 3] - level, time, water)
             speed = math.sqrt((vx - water[0]) ** 2 + (vy - water[1]) ** 2 + (vz - water[2]) ** 2)
             fastest = max(fastest, speed)
@@ -99,7 +85,7 @@ def add_panels(
                     continue
                 nx, ny, nz = nx / size, ny / size, nz / size
                 cx, cy, cz = (px + qx + ox) / 3.0 - at[0], (py + qy + oy) / 3.0 - at[1], (pz + qz + oz) / 3.0 - at[2]
-                wx, wy, wz = cvel[b, 0], cvel[b, 1], cvel[b, 2]
+                wx, wy, wz = spin[0], spin[1], spin[2]
                 ux = vx + wy * cz - wz * cy - water[0]
                 uy = vy + wz * cx - wx * cz - water[1]
                 uz = vz + wx * cy - wy * cx - water[2]
@@ -113,13 +99,11 @@ def add_panels(
         if fastest < 0.0:
             continue
         # its power over a timestep, beside what the body's motion relative to the water holds
-        mass, inertias = rigid_body(
-            members[member_starts[n] : member_starts[n + 1]], body_mass, body_inertia, xipos, ximat, r
-        )
+        mass, inertias = rigid_body(moving, n)
         least = min(inertias[0], inertias[1], inertias[2])
         push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
         twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
-        motion = mass * fastest * fastest + least * (cvel[b, 0] ** 2 + cvel[b, 1] ** 2 + cvel[b, 2] ** 2)
+        motion = mass * fastest * fastest + least * (spin[0] ** 2 + spin[1] ** 2 + spin[2] ** 2)
         change = (push / mass + twist / least) / (rate * rate) if least > 0.0 and mass > 0.0 else math.inf
         held = math.sqrt(motion / change) if change > motion else 1.0
         for c in range(6):
