@@ -80,11 +80,11 @@ def added_mass_coefficients() -> dict[str, float]:
 
 
 def _white() -> Sequence[Row]:
-    return [Row(f"C_D of a {name}", WHITE[name][3], ours, 0.2) for name, ours in drag_coefficients().items()]
+    return [Row(f"C_D, {name}", WHITE[name][3], ours, 0.2) for name, ours in drag_coefficients().items()]
 
 
 def _dnv() -> Sequence[Row]:
-    return [Row(f"C_A of a {name}", DNV[name][3], ours, 0.15) for name, ours in added_mass_coefficients().items()]
+    return [Row(f"C_A, {name}", DNV[name][3], ours, 0.15) for name, ours in added_mass_coefficients().items()]
 
 
 def _fall(model: mujoco.MjModel, *, drag: bool = True) -> float:
