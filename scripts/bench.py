@@ -39,20 +39,20 @@ from buoyancy_mj import (
     Simulation,
     TriMesh,
     Water,
-    catalog,
     equilibrium,
-    exact,
     hydrostatics,
     mended,
     read_scene,
     righting_arm,
     submerge,
-    tree,
-)  # fmt: skip
-from buoyancy_mj.assembly import assembled
-from buoyancy_mj.balance import balanced
-from buoyancy_mj.recording import Recording
-from buoyancy_mj.vessel import vessel_of
+)
+from buoyancy_mj.meshes import tree  # fmt: skip
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import assembled
+from buoyancy_mj.statics.balance import balanced
+from buoyancy_mj.statics.vessel import vessel_of
+from buoyancy_mj.submersion import exact
+from buoyancy_mj.viz.recording import Recording
 
 try:
     import capytaine

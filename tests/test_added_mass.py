@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import Buoyancy, ModelError, RegularWave, Water, add_water, water_in
-from buoyancy_mj.added_mass import ellipsoid, estimated
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import displacing_hulls
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+from buoyancy_mj.loads.added_mass import ellipsoid, estimated
 from tests import vessels
 
 DIAGONAL = np.array([3.0, 9.0, 14.0, 0.2, 0.5, 0.4])

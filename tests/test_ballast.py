@@ -9,16 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import (
-    BallastError,
-    BuoyancyWarning,
-    ModelError,
-    Water,
-    ballast,
-    equilibrium,
-    hydrostatics,
-    righting_arm,
-)
+from buoyancy_mj import BallastError, BuoyancyWarning, ModelError, Water, ballast, equilibrium, hydrostatics, righting_arm
 
 # a box that floats at 0.3 m, with places on its bottom, outside and in
 RAFT = """<mujoco><worldbody><body name="raft"><freejoint/>

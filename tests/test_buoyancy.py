@@ -8,7 +8,7 @@ import pytest
 from mujoco import rollout
 
 from buoyancy_mj import Buoyancy, Drag, LevelOscillation, ModelError, RegularWave, Water
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import displacing_hulls
 
 BOX = """
 <mujoco>

@@ -9,8 +9,8 @@ import time
 import pytest
 from typer.testing import CliRunner
 
-from buoyancy_mj import catalog
 from buoyancy_mj.cli import app
+from buoyancy_mj.scenes import catalog
 
 BOX = """<mujoco><worldbody><body name="box"><geom name="box" type="box" size=".2 .15 .05" mass="4"/></body>
 </worldbody></mujoco>"""

@@ -9,8 +9,8 @@ import pytest
 import xarray
 
 from buoyancy_mj import Buoyancy, ModelError, SceneError, Simulation, read_coefficients, state_coefficients
-from buoyancy_mj.coefficients import DOFS
-from buoyancy_mj.scene import scene_from_table
+from buoyancy_mj.loads.coefficients import DOFS
+from buoyancy_mj.scenes.scene import scene_from_table
 
 OMEGAS = np.array([1.0, math.sqrt(9.81 / 5.0), 2.0])
 MASS = 1000.0 * 2.0 / 3.0 * math.pi * 125.0

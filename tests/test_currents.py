@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from buoyancy_mj import Buoyancy, CurrentProfile, CurrentSeries, RegularWave, SceneError, Water, WaterError
-from buoyancy_mj.scene import read_scene, scene_from_table
-from buoyancy_mj.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.scenes.scene import read_scene, scene_from_table
+from buoyancy_mj.settings.settings import Settings, settings_from_texts, texts_from_settings
 
 PROFILE = CurrentProfile((0.0, 2.0, 10.0), ((1.0, 0.0, 0.0), (0.5, 0.2, 0.0), (0.0, 0.0, 0.0)))
 SERIES = CurrentSeries((0.0, 10.0, 15.0), ((0.0, 0.0, 0.0), (1.0, -0.5, 0.0), (1.0, 0.0, 0.1)))

@@ -8,8 +8,9 @@ import mujoco
 import pytest
 from typer.testing import CliRunner
 
-from buoyancy_mj import catalog, water_in
+from buoyancy_mj import water_in
 from buoyancy_mj.cli import app
+from buoyancy_mj.scenes import catalog
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
@@ -79,8 +80,10 @@ def test_every_file_and_picture_named_is_there():
         assert (ROOT / name).exists()
 
 
-def test_every_module_stands_in_the_import_contract():
+def test_every_room_stands_in_the_import_contract_and_on_the_list_of_the_readme():
     contract = (ROOT / "pyproject.toml").read_text()
-    for path in (ROOT / "buoyancy_mj").glob("*.py"):
-        if not path.stem.startswith("__"):
-            assert f"buoyancy_mj.{path.stem}" in contract, path.stem
+    rooms = [path.stem for path in (ROOT / "buoyancy_mj").iterdir() if not path.name.startswith("__")]
+    assert len(rooms) > 10
+    for room in rooms:
+        assert f'"buoyancy_mj.{room}' in contract or f"| buoyancy_mj.{room}" in contract, room
+        assert re.search(rf"^    (\w+, )?{room}\b", README, re.MULTILINE), room

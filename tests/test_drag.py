@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from buoyancy_mj import Buoyancy, Drag, ModelError, Water
-from buoyancy_mj.drag import estimated
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.loads.drag import estimated
 
 
 def damping(geom, drag=None, extra="", density=1000.0):

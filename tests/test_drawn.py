@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj.drawn import drawn_geoms
+from buoyancy_mj.viz.geoms import drawn_geoms
 
 MODEL = """
 <mujoco>

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from buoyancy_mj import Buoyancy, Drag, LevelOscillation, Simulation, Water, catalog, read_scene, submerge
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj import Buoyancy, Drag, LevelOscillation, Simulation, Water, read_scene, submerge
+from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.scenes import catalog
 from tests import naive
 
 G = 9.81

@@ -9,19 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import (
-    Buoyancy,
-    EquilibriumError,
-    ModelError,
-    Scene,
-    SceneError,
-    Simulation,
-    Start,
-    Water,
-    catalog,
-    equilibrium,
-    shapes,
-)
+from buoyancy_mj import Buoyancy, EquilibriumError, ModelError, Scene, SceneError, Simulation, Start, Water, equilibrium
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.scenes import catalog
 from tests import naive, vessels
 
 

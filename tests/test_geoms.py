@@ -6,8 +6,9 @@ import pytest
 import shapely
 import shapely.affinity
 
-from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Water, shapes
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Water
+from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.meshes import shapes
 from tests.naive import two_cones
 
 VEHICLE = """

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import Buoyancy, BuoyancyWarning, ModelError, RegularWave, Water, hydrostatics, mended, shapes
-from buoyancy_mj.vessel import vessel_of
+from buoyancy_mj import Buoyancy, BuoyancyWarning, ModelError, RegularWave, Water, hydrostatics, mended
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.statics.vessel import vessel_of
 from tests import naive, vessels
 
 

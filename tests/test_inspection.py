@@ -10,12 +10,13 @@ import trimesh
 from scipy.integrate import cumulative_trapezoid
 from typer.testing import CliRunner
 
-from buoyancy_mj import BuoyancyWarning, Water, equilibrium, hydrostatics, righting_arm, shapes
+from buoyancy_mj import BuoyancyWarning, Water, equilibrium, hydrostatics, righting_arm
 from buoyancy_mj.cli import app
-from buoyancy_mj.inspection import inspected
-from buoyancy_mj.lines import draft_curves, waterlines
-from buoyancy_mj.report import markdown, plain, sections
-from buoyancy_mj.vessel import vessel_of
+from buoyancy_mj.inspection.inspection import inspected
+from buoyancy_mj.inspection.report import markdown, plain, sections
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.statics.curves import draft_curves, waterlines
+from buoyancy_mj.statics.vessel import vessel_of
 from tests import vessels
 
 HEAVY_BELOW = '<inertial pos=".1 0 -.1" mass="400" diaginertia="9 9 9"/>'

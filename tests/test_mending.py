@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from buoyancy_mj import MeshError, mended, shapes
+from buoyancy_mj import MeshError, mended
 from buoyancy_mj.kernels.rays import misenclosed
-from buoyancy_mj.mending import diagnosed
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.meshes.repair import diagnosed
 
 BOX = shapes.box((1.0, 0.5, 0.3))
 SPHERE = trimesh.creation.icosphere(subdivisions=4)

@@ -5,8 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import MeshError, TriMesh, shapes
-from buoyancy_mj.mesh import refined
+from buoyancy_mj import MeshError, TriMesh
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.meshes.mesh import refined
 from tests.naive import trimesh_hull
 
 

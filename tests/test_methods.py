@@ -25,15 +25,15 @@ from buoyancy_mj import (
     Simulation,
     TriMesh,
     Water,
-    catalog,
-    convex_hull,
     read_scene,
-    shapes,
     submerge,
 )
-from buoyancy_mj.convex_hull import hull_moments
-from buoyancy_mj.methods import METHODS
-from buoyancy_mj.sections import integrated, sections
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.submersion import convex_hull
+from buoyancy_mj.submersion.convex_hull import hull_moments
+from buoyancy_mj.submersion.methods import METHODS
+from buoyancy_mj.submersion.sections import integrated, sections
 from tests import naive
 from tests.naive import trimesh_hull
 

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from buoyancy_mj import Buoyancy, Simulation, Water, catalog, hydrostatics, read_scene, submerge
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj import Buoyancy, Simulation, Water, hydrostatics, read_scene, submerge
+from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.scenes import catalog
 
 MODELS = catalog.models()
 

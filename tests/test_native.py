@@ -10,9 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mujoco import batch
 
-from buoyancy_mj import Buoyancy, Drag, EngineError, ModelError, RegularWave, Water, layout, native
-from buoyancy_mj.kernels import native as kernel
+from buoyancy_mj import Buoyancy, Drag, EngineError, ModelError, RegularWave, Water
+from buoyancy_mj.engine import layout, native
 from buoyancy_mj.kernels import wrenches
+from buoyancy_mj.kernels.entries import passive as kernel
 
 SEA = Water(density=1025.0, waves=[RegularWave(0.1, wavelength=6.0), RegularWave(0.03, wavelength=2.0, direction=1.0)])
 RAFT = """

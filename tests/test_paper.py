@@ -13,11 +13,12 @@ import trimesh
 from scipy.integrate import quad
 from typer.testing import CliRunner
 
-from buoyancy_mj import BuoyancyError, Exact, Sections, Start, catalog
+from buoyancy_mj import BuoyancyError, Exact, Sections, Start
 from buoyancy_mj.cli import app
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import displacing_hulls
 from buoyancy_mj.paper import report, runs, solids, statics
 from buoyancy_mj.paper.studies import STUDIES
+from buoyancy_mj.scenes import catalog
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "paper"

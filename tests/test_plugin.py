@@ -34,11 +34,11 @@ from buoyancy_mj import (
     Water,
     WaterError,
     add_water,
-    plugin,
     water_in,
 )
-from buoyancy_mj.callbacks import PLUGIN
-from buoyancy_mj.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.engine import plugin
+from buoyancy_mj.engine.callbacks import PLUGIN
+from buoyancy_mj.settings.settings import Settings, settings_from_texts, texts_from_settings
 
 SEA = Water(density=1025.0, level=0.1, waves=[RegularWave(0.1, wavelength=6.0, direction=0.3), LevelOscillation(0.05, 0.5)])
 PLAIN = """<mujoco><option timestep="0.004"/><worldbody>

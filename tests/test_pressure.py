@@ -8,10 +8,11 @@ import pytest
 import trimesh
 from scipy.special import j1
 
-from buoyancy_mj import Buoyancy, LevelOscillation, MethodError, RegularWave, TriMesh, Water, add_water, shapes, water_in
-from buoyancy_mj.exact import PackedHulls
+from buoyancy_mj import Buoyancy, LevelOscillation, MethodError, RegularWave, TriMesh, Water, add_water, water_in
 from buoyancy_mj.kernels.waves import head
-from buoyancy_mj.scene import scene_from_table
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.scenes.scene import scene_from_table
+from buoyancy_mj.submersion.exact import PackedHulls
 from tests import vessels
 
 BALL = trimesh.creation.icosphere(subdivisions=4)

@@ -9,8 +9,9 @@ import time
 
 import pytest
 
-from buoyancy_mj import RecordingError, Simulation, catalog, read_scene
-from buoyancy_mj.recording import Recording
+from buoyancy_mj import RecordingError, Simulation, read_scene
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.viz.recording import Recording
 
 SHORT = ["duration=0.5", "record_rate=30"]
 
@@ -139,8 +140,9 @@ def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
 FULL_DISK = """
 import resource, sys
 from pathlib import Path
-from buoyancy_mj import RecordingError, Simulation, catalog, read_scene
-from buoyancy_mj.recording import Recording
+from buoyancy_mj import RecordingError, Simulation, read_scene
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.viz.recording import Recording
 simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], ["duration=4"]))
 recording = Recording(simulation, Path(sys.argv[1]))
 # a file may not grow beyond this: writing fails as on a full disk

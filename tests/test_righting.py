@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import BuoyancyWarning, EquilibriumError, ModelError, Water, righting_arm, shapes
-from buoyancy_mj.balance import floated
-from buoyancy_mj.hydrostatics import hydrostatics_of
-from buoyancy_mj.vessel import vessel_of
+from buoyancy_mj import BuoyancyWarning, EquilibriumError, ModelError, Water, righting_arm
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.statics.balance import floated
+from buoyancy_mj.statics.hydrostatics import hydrostatics_of
+from buoyancy_mj.statics.vessel import vessel_of
 from tests import naive, vessels
 
 DEGREES = np.radians([10.0, 20.0, 25.0, 35.0, 45.0, 60.0, 90.0, 120.0])

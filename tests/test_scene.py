@@ -15,9 +15,9 @@ from buoyancy_mj import (
     RegularWave,
     SceneError,
     Simulation,
-    catalog,
     read_scene,
 )
+from buoyancy_mj.scenes import catalog
 
 SCENE = """
 title = "A box"

@@ -17,13 +17,13 @@ from buoyancy_mj import (
     RegularWave,
     Water,
     WaterError,
-    shapes,
 )
-from buoyancy_mj.exact import PackedHulls
 from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels import waves as kernels
-from buoyancy_mj.scene import scene_from_table
-from buoyancy_mj.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.scenes.scene import scene_from_table
+from buoyancy_mj.settings.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.submersion.exact import PackedHulls
 from tests import naive, vessels
 
 HOUR = np.arange(0.0, 3600.0, 0.1)

@@ -3,7 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from buoyancy_mj import shapes, submerge
+from buoyancy_mj import submerge
+from buoyancy_mj.meshes import shapes
 
 
 @pytest.mark.parametrize(

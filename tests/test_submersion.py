@@ -7,8 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, exact, shapes, submerge, submersion
-from buoyancy_mj.mesh import refined
+from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, submerge
+from buoyancy_mj.meshes import shapes
+from buoyancy_mj.meshes.mesh import refined
+from buoyancy_mj.submersion import exact
+from buoyancy_mj.submersion import submerge as submersion
 from tests import naive
 from tests.naive import trimesh_hull
 

@@ -12,9 +12,10 @@ import pyarrow.parquet
 import pytest
 from typer.testing import CliRunner
 
-from buoyancy_mj import SceneError, Simulation, SweepError, catalog, read_scene, sweep
+from buoyancy_mj import SceneError, Simulation, SweepError, read_scene
 from buoyancy_mj.cli import app
-from buoyancy_mj.sweep import Over, Sweep, draws, grid, parsed
+from buoyancy_mj.scenes import catalog, sweep
+from buoyancy_mj.scenes.sweep import Over, Sweep, draws, grid, parsed
 
 QUICK = ("duration=0.3",)
 

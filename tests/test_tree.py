@@ -7,8 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import Exact, LevelOscillation, MethodError, RegularWave, TriMesh, Water, exact, shapes, tree
+from buoyancy_mj import Exact, LevelOscillation, MethodError, RegularWave, TriMesh, Water
 from buoyancy_mj.kernels import clip
+from buoyancy_mj.meshes import shapes, tree
+from buoyancy_mj.submersion import exact
 from tests import naive
 from tests.naive import trimesh_hull
 

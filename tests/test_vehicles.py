@@ -11,8 +11,9 @@ import pytest
 import trimesh
 from typer.testing import CliRunner
 
-from buoyancy_mj import mended, shapes
+from buoyancy_mj import mended
 from buoyancy_mj.cli import app
+from buoyancy_mj.meshes import shapes
 from tests import vessels
 
 URDF = """<robot name="robot"><link name="base"><inertial><mass value="{mass}"/>

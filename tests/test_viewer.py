@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from buoyancy_mj import RegularWave, Water
-from buoyancy_mj.viewer import draw_surface
+from buoyancy_mj.viz.viewer import draw_surface
 
 MODEL = mujoco.MjModel.from_xml_string("<mujoco/>")
 CENTRE = np.array([3.0, -2.0, 0.5])

@@ -9,7 +9,7 @@ import numpy as np
 import trimesh
 
 from buoyancy_mj import TriMesh, mended
-from buoyancy_mj.mesh import open_edges
+from buoyancy_mj.meshes.mesh import open_edges
 from tests.naive import trimesh_hull
 
 DATA = Path(__file__).parent / "data"

@@ -13,9 +13,9 @@ import mujoco
 import typer
 from rich.console import Console
 
-from buoyancy_mj import catalog
 from buoyancy_mj.errors import BuoyancyError
-from buoyancy_mj.scene import Scene, read_scene
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.scene import Scene, read_scene
 
 app = typer.Typer(help="Put water into MuJoCo.", no_args_is_help=True, add_completion=False, rich_markup_mode=None)
 # what users name may hold brackets

@@ -9,14 +9,15 @@ import mujoco
 import typer
 
 from buoyancy_mj import ballast as ballasts
-from buoyancy_mj import catalog, report
-from buoyancy_mj.assembly import compiled, vehicle_spec
 from buoyancy_mj.cli.common import FILL, GEOMS, HULL, app, err, out, quoted, rerun, told
 from buoyancy_mj.errors import ModelError, SceneError
-from buoyancy_mj.inspection import Inspection, inspected
-from buoyancy_mj.mjcf import with_meshes, written
-from buoyancy_mj.settings import water_from_table
-from buoyancy_mj.water import Water
+from buoyancy_mj.hulls.mjcf import with_meshes, written
+from buoyancy_mj.inspection import report
+from buoyancy_mj.inspection.inspection import Inspection, inspected
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import compiled, vehicle_spec
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.settings.settings import water_from_table
 
 _MODEL = Annotated[str, typer.Argument(help="MJCF, URDF, or the name of a model that ships.")]
 _WATER = Annotated[
@@ -55,7 +56,7 @@ def inspect_(
     if plot is not None:
         err.print(f"plots and report: {quoted(_plotted(found, plot))}", highlight=False, soft_wrap=True)
     if record is not None:
-        from buoyancy_mj.sketch import recorded  # Rerun takes half a second to import
+        from buoyancy_mj.viz.inspection import recorded
 
         err.print(f"open the recording: {rerun()} {quoted(recorded(found, record))}", highlight=False, soft_wrap=True)
     if repair is not None:
@@ -120,7 +121,7 @@ def _water(words: list[str] | None) -> Water:
 def _plotted(found: Inspection, folder: Path) -> Path:
     """Pictures and the report beside them."""
     try:
-        from buoyancy_mj.charts import drawn
+        from buoyancy_mj.inspection.charts import drawn
     except ModuleNotFoundError as error:
         if error.name is None or not error.name.startswith("matplotlib"):
             raise

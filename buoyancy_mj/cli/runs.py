@@ -12,7 +12,6 @@ import typer
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from buoyancy_mj import catalog
 from buoyancy_mj.cli.common import (
     FILL,
     GEOMS,
@@ -31,9 +30,10 @@ from buoyancy_mj.cli.common import (
     told,
 )
 from buoyancy_mj.errors import SceneError
-from buoyancy_mj.frames import Summary
-from buoyancy_mj.scene import read_scene
-from buoyancy_mj.simulation import Simulation
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.frames import Summary
+from buoyancy_mj.scenes.scene import read_scene
+from buoyancy_mj.scenes.simulation import Simulation
 
 
 @app.command()
@@ -107,7 +107,7 @@ def view(
     fill: FILL = None,
 ) -> None:
     """Open MuJoCo's interactive viewer with the water acting and drawn in it."""
-    from buoyancy_mj.viewer import view as show  # needs GLFW and a display, which 'run' does not
+    from buoyancy_mj.viz.viewer import view as show
 
     show(
         Simulation(
@@ -123,7 +123,7 @@ def _recorded(simulation: Simulation, target: Path | None, *, live: bool) -> tup
             for frame in simulation.frames():
                 advance(frame.time)
         return simulation.summary(), None
-    from buoyancy_mj.recording import Recording  # Rerun takes half a second to import
+    from buoyancy_mj.viz.recording import Recording
 
     recording = Recording(simulation, target, live=live)
     try:

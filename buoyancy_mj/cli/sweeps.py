@@ -6,8 +6,6 @@ from typing import Annotated
 import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from buoyancy_mj import catalog
-from buoyancy_mj import sweep as sweeps
 from buoyancy_mj.cli.common import (
     FILL,
     GEOMS,
@@ -26,7 +24,9 @@ from buoyancy_mj.cli.common import (
 from buoyancy_mj.cli.common import (
     out as console,
 )
-from buoyancy_mj.scene import read_scene
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes import sweep as sweeps
+from buoyancy_mj.scenes.scene import read_scene
 
 
 @app.command()

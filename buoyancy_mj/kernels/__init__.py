@@ -16,8 +16,8 @@ _FOLDER = Path(__file__).parent
 
 def _drop_stale(folder: Path) -> None:
     """Remove compiled kernels that are older than the newest source in `folder`."""
-    newest = max(source.stat().st_mtime for source in folder.glob("*.py"))
-    for compiled in (folder / "__pycache__").glob("*.nb[ci]"):
+    newest = max(source.stat().st_mtime for source in folder.rglob("*.py"))
+    for compiled in folder.rglob("*.nb[ci]"):
         # another process may be doing the same, or the folder be read-only
         with contextlib.suppress(OSError):
             if compiled.stat().st_mtime < newest:

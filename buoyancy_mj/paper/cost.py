@@ -9,16 +9,16 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj import catalog
-from buoyancy_mj.buoyancy import Buoyancy
-from buoyancy_mj.convex_hull import ConvexHull
-from buoyancy_mj.methods import Method
+from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.statics import FIXED, METHODS, SECTIONS
 from buoyancy_mj.paper.study import Claim, Result, listed, percent, table_of, verdict
-from buoyancy_mj.scene import Scene, read_scene
-from buoyancy_mj.simulation import Simulation
-from buoyancy_mj.water import Water
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.scene import Scene, read_scene
+from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.submersion.convex_hull import ConvexHull
+from buoyancy_mj.submersion.methods import Method
 
 
 def timing(quick: bool) -> Result:

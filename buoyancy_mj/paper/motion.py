@@ -7,18 +7,18 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.assembly import assembled
-from buoyancy_mj.buoyancy import Buoyancy
-from buoyancy_mj.convex_hull import ConvexHull
-from buoyancy_mj.drag import Drag
+from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.kernels import clip
-from buoyancy_mj.methods import Method
+from buoyancy_mj.loads.drag import Drag
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.runs import FREQUENCY, SURFACES, run, scene_of, steps, swing
 from buoyancy_mj.paper.statics import DENSITY, METHODS
 from buoyancy_mj.paper.study import Claim, Result, listed, table_of, verdict
-from buoyancy_mj.scene import Scene, Start
-from buoyancy_mj.submersion import submerge
+from buoyancy_mj.scenes.assembly import assembled
+from buoyancy_mj.scenes.scene import Scene, Start
+from buoyancy_mj.submersion.convex_hull import ConvexHull
+from buoyancy_mj.submersion.methods import Method
+from buoyancy_mj.submersion.submerge import submerge
 
 SWING = 0.05
 """What the paper allows the centre of gravity on waves [m]."""

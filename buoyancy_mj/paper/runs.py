@@ -7,15 +7,15 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj import catalog
-from buoyancy_mj.assembly import assembled
-from buoyancy_mj.buoyancy import Buoyancy
+from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.kernels import clip
-from buoyancy_mj.methods import Method
 from buoyancy_mj.paper.statics import DENSITY
-from buoyancy_mj.scene import Scene, read_scene
-from buoyancy_mj.water import Water
-from buoyancy_mj.waves import LevelOscillation, RegularWave
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import assembled
+from buoyancy_mj.scenes.scene import Scene, read_scene
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.sea.waves import LevelOscillation, RegularWave
+from buoyancy_mj.submersion.methods import Method
 
 AMPLITUDE, FREQUENCY = 0.3, 0.5
 """The paper's surface: +-0.3 m at 0.5 Hz."""

@@ -8,11 +8,11 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from buoyancy_mj import catalog
-from buoyancy_mj.geoms import displacing_hulls
-from buoyancy_mj.mesh import TriMesh
-from buoyancy_mj.methods import Method
-from buoyancy_mj.submersion import submerge
+from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.submersion.methods import Method
+from buoyancy_mj.submersion.submerge import submerge
 
 # the hourglass that ships, see models/hourglass/README.md [m]
 BASE_RADIUS, NECK_RADIUS, HALF_HEIGHT = 0.15, 0.04, 0.20

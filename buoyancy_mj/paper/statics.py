@@ -5,13 +5,13 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj.convex_hull import ConvexHull
-from buoyancy_mj.exact import Exact
-from buoyancy_mj.mesh import TriMesh
-from buoyancy_mj.methods import Method
+from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.study import Claim, Result, listed, percent, table_of, verdict
-from buoyancy_mj.sections import Sections, sections
+from buoyancy_mj.submersion.convex_hull import ConvexHull
+from buoyancy_mj.submersion.exact import Exact
+from buoyancy_mj.submersion.methods import Method
+from buoyancy_mj.submersion.sections import Sections, sections
 
 HULL, CUT, SECTIONS = ConvexHull(), ConvexHull(cut=True, centroid="hull"), Sections()
 METHODS: dict[str, Method] = {

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from buoyancy_mj.buoyancy import Buoyancy
-from buoyancy_mj.water import Water
+from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.sea.water import Water
 
 
 @dataclasses.dataclass(frozen=True)

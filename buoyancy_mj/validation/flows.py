@@ -9,14 +9,14 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.special import h1vp
 
-from buoyancy_mj.added_mass import estimated as added_mass_of
-from buoyancy_mj.buoyancy import Buoyancy
-from buoyancy_mj.drag import Drag
-from buoyancy_mj.drag import estimated as damping_of
-from buoyancy_mj.geoms import displacing_hulls
+from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.loads.added_mass import estimated as added_mass_of
+from buoyancy_mj.loads.drag import Drag
+from buoyancy_mj.loads.drag import estimated as damping_of
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.sea.waves import RegularWave
 from buoyancy_mj.validation.case import Case, Row, amplitude, body, followed, numeric
-from buoyancy_mj.water import Water
-from buoyancy_mj.waves import RegularWave
 
 _CYLINDER = '<geom type="cylinder" size=".1 {half}"/>'
 WHITE: dict[str, tuple[str, int, float, float]] = {

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from buoyancy_mj import catalog
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.sea.waves import RegularWave
 from buoyancy_mj.validation.case import Case, Row, amplitude, crossings, followed
-from buoyancy_mj.water import Water
-from buoyancy_mj.waves import RegularWave
 
 TASK_10 = (
     "Wendt et al. 2019, *Ocean Energy Systems Wave Energy Modelling Task: Modelling, Verification and Validation of Wave "

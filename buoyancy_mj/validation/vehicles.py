@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from buoyancy_mj import catalog
-from buoyancy_mj.added_mass import ellipsoid
-from buoyancy_mj.hydrostatics import hydrostatics
+from buoyancy_mj.loads.added_mass import ellipsoid
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.statics.hydrostatics import hydrostatics
 from buoyancy_mj.validation.case import Case, Row, body, followed, numeric, period
-from buoyancy_mj.water import Water
 
 VON_BENZON = (
     "von Benzon et al. 2022, *An Open-Source Benchmark Simulator: Control of a BlueROV2 Underwater Robot*, J. Mar. Sci. "
