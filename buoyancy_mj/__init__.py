@@ -23,7 +23,7 @@ from buoyancy_mj.loads.drag import Drag as Drag
 from buoyancy_mj.loads.loads import Loads as Loads
 from buoyancy_mj.loads.loads import Portion as Portion
 from buoyancy_mj.meshes.mesh import TriMesh as TriMesh
-from buoyancy_mj.meshes.repair import mended as mended
+from buoyancy_mj.meshes.repair import repair as repair
 from buoyancy_mj.scenes.frames import Frame as Frame
 from buoyancy_mj.scenes.frames import Summary as Summary
 from buoyancy_mj.scenes.scene import Scene as Scene
@@ -39,7 +39,7 @@ from buoyancy_mj.sea.waves import LevelOscillation as LevelOscillation
 from buoyancy_mj.sea.waves import RegularWave as RegularWave
 from buoyancy_mj.sea.waves import wavenumber as wavenumber
 from buoyancy_mj.statics.ballast import Ballast as Ballast
-from buoyancy_mj.statics.ballast import Placed as Placed
+from buoyancy_mj.statics.ballast import BallastItem as BallastItem
 from buoyancy_mj.statics.ballast import ballast as ballast
 from buoyancy_mj.statics.equilibrium import Equilibrium as Equilibrium
 from buoyancy_mj.statics.equilibrium import equilibrium as equilibrium

@@ -41,16 +41,16 @@ from buoyancy_mj import (
     Water,
     equilibrium,
     hydrostatics,
-    mended,
     read_scene,
+    repair,
     righting_arm,
     submerge,
 )
 from buoyancy_mj.meshes import tree  # fmt: skip
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.assembly import assembled
-from buoyancy_mj.statics.balance import balanced
-from buoyancy_mj.statics.vessel import vessel_of
+from buoyancy_mj.scenes.assembly import assemble
+from buoyancy_mj.statics.balance import find_balance
+from buoyancy_mj.statics.vessel import build_vessel
 from buoyancy_mj.submersion import exact
 from buoyancy_mj.viz.recording import Recording
 
@@ -82,11 +82,17 @@ def median_time(call: Callable[[int], object], least: float, fewest: int = 5) ->
 def solids(quick: bool) -> list[tuple[str, trimesh.Trimesh]]:
     """Meshes by name, about a metre in size, the smallest of each first."""
     made = [("sphere", trimesh.creation.icosphere(n)) for n in ((2, 4) if quick else range(2, 8))]
-    cone = trimesh.creation.revolve([[0, -0.5], [0.5, -0.5], [0.05, 0.0], [0.5, 0.5], [0, 0.5]], sections=32)
+    cone = trimesh.creation.revolve(
+        [[0, -0.5], [0.5, -0.5], [0.05, 0.0], [0.5, 0.5], [0, 0.5]], sections=32
+    )
     torus = trimesh.creation.torus(0.6, 0.2, major_sections=32, minor_sections=16)
     part = Simulation(read_scene(catalog.scenes()["auv_drop_still"])).hulls[0].mesh
     hull = trimesh.Trimesh(part.vertices / part.radius, part.faces, process=False)
-    for name, solid in (("hourglass", cone.subdivide()), ("torus", torus), ("AUV pressure hull", hull)):
+    for name, solid in (
+        ("hourglass", cone.subdivide()),
+        ("torus", torus),
+        ("AUV pressure hull", hull),
+    ):
         for _ in range(1 if quick else 5):
             made.append((name, solid))
             solid = solid.subdivide()
@@ -97,11 +103,18 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
     """Times [s] of one submersion by us and by others, in five attitudes, the middle a little above or below the surface."""
     mesh = TriMesh(solid.vertices, solid.faces)
     wave = Water(waves=RegularWave(0.1, wavelength=10.0))
-    places = [np.array([0.0, 0.0, 0.2 * np.sin(i)]) - turn @ solid.bounds.mean(axis=0) for i, turn in enumerate(TURNS)]
-    body = manifold3d.Manifold(manifold3d.Mesh64(np.array(solid.vertices), np.array(solid.faces, np.uint64)))
+    places = [
+        np.array([0.0, 0.0, 0.2 * np.sin(i)]) - turn @ solid.bounds.mean(axis=0)
+        for i, turn in enumerate(TURNS)
+    ]
+    body = manifold3d.Manifold(
+        manifold3d.Mesh64(np.array(solid.vertices), np.array(solid.faces, np.uint64))
+    )
 
     def by_trimesh(i: int) -> tuple[float, np.ndarray]:
-        turned = trimesh.Trimesh(solid.vertices @ TURNS[i].T + places[i], solid.faces, process=False)
+        turned = trimesh.Trimesh(
+            solid.vertices @ TURNS[i].T + places[i], solid.faces, process=False
+        )
         wet = turned.slice_plane([0, 0, 0], [0, 0, -1], cap=True)
         return wet.volume, wet.center_mass
 
@@ -114,7 +127,9 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
 
     def by_capytaine(i: int) -> float:
         return float(
-            capytaine.Mesh(vertices=solid.vertices @ TURNS[i].T + places[i], faces=solid.faces).immersed_part().volume
+            capytaine.Mesh(vertices=solid.vertices @ TURNS[i].T + places[i], faces=solid.faces)
+            .immersed_part()
+            .volume
         )
 
     times = {
@@ -126,7 +141,9 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
         "manifold3d": median_time(by_manifold, least),
     }
     if capytaine is not None and len(solid.faces) < 100_000:
-        times["Capytaine"] = median_time(by_capytaine, least, fewest=1 if len(solid.faces) > 10_000 else 3)
+        times["Capytaine"] = median_time(
+            by_capytaine, least, fewest=1 if len(solid.faces) > 10_000 else 3
+        )
     packed = exact.PackedHulls([mesh], [0], [0], Water())
     arrays = [*packed.arrays.values(), packed.results, mesh.vertices, mesh.faces]
     times["bytes per triangle"] = sum(values.nbytes for values in arrays) / len(solid.faces)
@@ -135,7 +152,13 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
 
 def exponent(rows: list[dict[str, float]], column: str) -> float:
     """Of the power law through times against triangles, from `LARGE` ones up."""
-    points = np.log([(row["triangles"], row[column]) for row in rows if column in row and row["triangles"] >= LARGE])
+    points = np.log(
+        [
+            (row["triangles"], row[column])
+            for row in rows
+            if column in row and row["triangles"] >= LARGE
+        ]
+    )
     return float(np.polyfit(*points.T, 1)[0]) if len(points) > 1 else float("nan")
 
 
@@ -184,7 +207,7 @@ def steps_of(scene: Scene) -> dict[str, float]:
     for label, afloat in (("with", True), ("without", False)):
         best = np.inf
         for _ in range(3):
-            model, data, _ = assembled(scene, afloat=afloat)
+            model, data, _ = assemble(scene, afloat=afloat)
             mujoco.mj_forward(model, data)
             steps = round(scene.duration / scene.timestep)
             started = time.perf_counter()
@@ -213,7 +236,7 @@ def seas(components: int) -> dict[str, dict[str, float]]:
 def batches(name: str, count: int) -> dict[str, float]:
     """Simulated over wall time of a batch of a scene's model, on one thread and on two."""
     scene = read_scene(catalog.scenes()[name])
-    model, data, _ = assembled(scene, afloat=True)
+    model, data, _ = assemble(scene, afloat=True)
     factors = {}
     for threads in (1, 2):
         many = batch.Batch(model, count, nthread=threads)
@@ -236,7 +259,9 @@ def real_time_factors(name: str) -> dict[str, float]:
     with tempfile.TemporaryDirectory() as folder:
         for label in ("headless", "recorded"):
             simulation = Simulation(read_scene(catalog.scenes()[name]))
-            recording = Recording(simulation, Path(folder) / "run.rrd") if label == "recorded" else None
+            recording = (
+                Recording(simulation, Path(folder) / "run.rrd") if label == "recorded" else None
+            )
             for frame in simulation.frames():
                 if recording:
                     recording.add(frame)
@@ -267,15 +292,19 @@ def vehicles(folder: Path) -> dict[str, Path]:
     ball = trimesh.creation.icosphere(4, radius=0.5)
     # a double-ended hull with a flat deck, some 100,000 triangles
     u, v = np.meshgrid(np.linspace(-1.0, 1.0, 224), np.linspace(0.0, 1.0, 112), indexing="ij")
-    side = np.stack([u, 0.25 * (1.0 - u**2) * (1.0 - (1.0 - v) ** 2), 0.3 * v - 0.2], axis=-1).reshape(-1, 3)
+    side = np.stack(
+        [u, 0.25 * (1.0 - u**2) * (1.0 - (1.0 - v) ** 2), 0.3 * v - 0.2], axis=-1
+    ).reshape(-1, 3)
     i, j = np.meshgrid(np.arange(223), np.arange(111), indexing="ij")
     a = (i * 112 + j).ravel()
-    shell = np.vstack([np.column_stack([a, a + 113, a + 112]), np.column_stack([a, a + 1, a + 113])])
+    shell = np.vstack(
+        [np.column_stack([a, a + 113, a + 112]), np.column_stack([a, a + 1, a + 113])]
+    )
     rim = 112 * np.arange(224) + 111
     p, q, n = rim[:-1], rim[1:], len(side)
     deck = np.vstack([np.column_stack([p, p + n, q]), np.column_stack([q, p + n, q + n])])
     faces = np.vstack([shell, shell[:, ::-1] + n, deck])
-    hull, _ = mended(np.vstack([side, side * [1.0, -1.0, 1.0]]), faces)
+    hull, _ = repair(np.vstack([side, side * [1.0, -1.0, 1.0]]), faces)
     paths = {"sauvc_auv": catalog.models()["sauvc_auv"]}
     for name, mesh, mass in (
         ("ball", ball, 250.0),
@@ -294,21 +323,24 @@ def vehicles(folder: Path) -> dict[str, Path]:
 def statics(path: Path, least: float) -> dict[str, float]:
     """Times [s] of what is asked of a vehicle at rest, everything included, and of a whole `inspect`."""
     model = catalog.read_spec(path).compile()
-    vessel = vessel_of(model)
+    vessel = build_vessel(model)
     times = {"triangles": float(sum(len(mesh.faces) for mesh in vessel.meshes))}
     starts = [
-        [*model.qpos0[:3], *Rotation.from_euler("x", 0.1 + 0.1 * i).as_quat(scalar_first=True)] for i in range(len(TURNS))
+        [*model.qpos0[:3], *Rotation.from_euler("x", 0.1 + 0.1 * i).as_quat(scalar_first=True)]
+        for i in range(len(TURNS))
     ]
     for name, call in (
         ("hydrostatics", lambda i: hydrostatics(model, qpos=starts[i])),
         ("equilibrium", lambda i: equilibrium(model, start=starts[i])),
-        ("once more from the same vessel", lambda i: balanced(vessel, TURNS[i])),
+        ("once more from the same vessel", lambda i: find_balance(vessel, TURNS[i])),
         ("every equilibrium", lambda i: equilibrium(model, all=True)),
         ("righting arm", lambda i: righting_arm(model)),
     ):
         times[name] = median_time(call, least, fewest=3)
     started = time.perf_counter()
-    subprocess.run([sys.executable, "-m", "buoyancy_mj", "inspect", str(path)], check=True, capture_output=True)
+    subprocess.run(
+        [sys.executable, "-m", "buoyancy_mj", "inspect", str(path)], check=True, capture_output=True
+    )
     times["inspect"] = time.perf_counter() - started
     if capytaine is not None and times["triangles"] < 4 * LARGE:
         parts = [mesh.transformed(vessel.rotation, vessel.position) for mesh in vessel.meshes]
@@ -316,8 +348,12 @@ def statics(path: Path, least: float) -> dict[str, float]:
         faces = np.vstack([part.faces + n for part, n in zip(parts, ends, strict=False)])
         whole = capytaine.Mesh(vertices=np.vstack([part.vertices for part in parts]), faces=faces)
         dofs = capytaine.rigid_body_dofs(rotation_center=vessel.position)
-        body = capytaine.FloatingBody(mesh=whole, dofs=dofs, center_of_mass=vessel.position, mass=vessel.mass)
-        times["Capytaine"] = median_time(lambda i: body.compute_hydrostatics(rho=1000.0, g=9.81), least, fewest=3)
+        body = capytaine.FloatingBody(
+            mesh=whole, dofs=dofs, center_of_mass=vessel.position, mass=vessel.mass
+        )
+        times["Capytaine"] = median_time(
+            lambda i: body.compute_hydrostatics(rho=1000.0, g=9.81), least, fewest=3
+        )
     return times
 
 
@@ -351,13 +387,26 @@ def plot(path: Path, measured: dict[str, dict[str, dict[str, float]]]) -> None:
     rows = list(measured["sphere"].values())
     figure = Figure(figsize=(7, 4.5), layout="constrained")
     axes = figure.add_subplot()
-    for column, label in (("still", "still water"), ("waves", "in waves"), *((peer, peer) for peer in PEERS)):
+    for column, label in (
+        ("still", "still water"),
+        ("waves", "in waves"),
+        *((peer, peer) for peer in PEERS),
+    ):
         points = [(row["triangles"], row[column] * 1e6) for row in rows if column in row]
         if points:
             fitted = exponent(rows, column)
             told = f"{label}, n^{fitted:.2f}" if np.isfinite(fitted) else label
-            axes.loglog(*zip(*points, strict=True), marker="o", lw=2.5 if column in ("still", "waves") else 1.2, label=told)
-    axes.set(xlabel="triangles", ylabel="time of one submersion [us]", title="a sphere in random attitudes")
+            axes.loglog(
+                *zip(*points, strict=True),
+                marker="o",
+                lw=2.5 if column in ("still", "waves") else 1.2,
+                label=told,
+            )
+    axes.set(
+        xlabel="triangles",
+        ylabel="time of one submersion [us]",
+        title="a sphere in random attitudes",
+    )
     axes.grid(alpha=0.3)
     axes.legend(fontsize=8)
     figure.savefig(path, dpi=110)
@@ -376,7 +425,9 @@ def main() -> None:
     sections = ("submersion", "tree", "step", "sea", "batch", "real_time", "first_step", "statics")
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="fewer sizes and repeats")
-    parser.add_argument("--only", nargs="+", choices=sections, default=sections, help="measure these alone")
+    parser.add_argument(
+        "--only", nargs="+", choices=sections, default=sections, help="measure these alone"
+    )
     parser.add_argument("--plot", type=Path, help="draw time against triangles into this picture")
     parser.add_argument("--save", type=Path, help="write the measurements to this JSON file")
     parser.add_argument("--compare", type=Path, help="set them beside those of this JSON file")
@@ -394,16 +445,25 @@ def main() -> None:
         if options.plot:
             plot(options.plot, measured)
     if "tree" in options.only:
-        trees = [tree_ratios(20 * 4**n, least) for n in ((4,) if options.quick else (2, 3, 4, 5, 6))]
-        table = Table(title="time by the tree where it is chosen, over time without, same mesh and poses")
+        trees = [
+            tree_ratios(20 * 4**n, least) for n in ((4,) if options.quick else (2, 3, 4, 5, 6))
+        ]
+        table = Table(
+            title="time by the tree where it is chosen, over time without, same mesh and poses"
+        )
         for column in trees[0]:
             table.add_column(column, justify="right")
         for row in trees:
-            table.add_row(f"{row['triangles']:,.0f}", *(f"{row[column]:.2f}" for column in row if column != "triangles"))
+            table.add_row(
+                f"{row['triangles']:,.0f}",
+                *(f"{row[column]:.2f}" for column in row if column != "triangles"),
+            )
         console.print(table)
         results["tree"] = {f"{row['triangles']:.0f}": row for row in trees}
     if "step" in options.only:
-        results["step"] = {name: scene_steps(name) for name in ("auv_drop_still", "auv_pool", "auv_waves")}
+        results["step"] = {
+            name: scene_steps(name) for name in ("auv_drop_still", "auv_pool", "auv_waves")
+        }
         for kind in ("hydrostatic", "froude-krylov"):
             results["step"][f"auv_waves, {kind}"] = scene_steps("auv_waves", f'pressure="{kind}"')
         for name, step in results["step"].items():
@@ -433,21 +493,33 @@ def main() -> None:
         )
     if "first_step" in options.only:
         results["first_step"] = first_step()
-        console.print(f"from a fresh interpreter through the first step of auv_waves: {results['first_step']:.2f} s")
+        console.print(
+            f"from a fresh interpreter through the first step of auv_waves: {results['first_step']:.2f} s"
+        )
     if "statics" in options.only:
         with tempfile.TemporaryDirectory() as folder:
-            results["statics"] = {name: statics(path, least) for name, path in vehicles(Path(folder)).items()}
+            results["statics"] = {
+                name: statics(path, least) for name, path in vehicles(Path(folder)).items()
+            }
         for name, row in results["statics"].items():
-            told = ", ".join(f"{what} {1e3 * row[what]:,.1f} ms" for what in row if what not in ("triangles", "Capytaine"))
+            told = ", ".join(
+                f"{what} {1e3 * row[what]:,.1f} ms"
+                for what in row
+                if what not in ("triangles", "Capytaine")
+            )
             console.print(f"{name}, {row['triangles']:,.0f} triangles: {told}")
             if "Capytaine" in row:
-                console.print(f"    Capytaine's hydrostatics take {row['Capytaine'] / row['hydrostatics']:,.0f} x as long")
+                console.print(
+                    f"    Capytaine's hydrostatics take {row['Capytaine'] / row['hydrostatics']:,.0f} x as long"
+                )
 
     if options.compare:
         before = flat(json.loads(options.compare.read_text()))
         for key, value in flat(results).items():
             if key in before and not key.endswith("triangles"):
-                console.print(f"{key}: {value:.4g}, was {before[key]:.4g}, {value / before[key]:.2f} x")
+                console.print(
+                    f"{key}: {value:.4g}, was {before[key]:.4g}, {value / before[key]:.2f} x"
+                )
     if options.save:
         options.save.write_text(json.dumps(results, indent=2) + "\n")
 

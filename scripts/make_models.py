@@ -47,7 +47,8 @@ def frame() -> Trimesh:
     for side in (-0.5, 0.5):
         plate = box([PLATE_LENGTH, PLATE_THICKNESS, PLATE_HEIGHT])
         windows = [
-            box([WINDOW_LENGTH, 1.0, WINDOW_HEIGHT]).apply_translation([x, 0.0, 0.0]) for x in (-WINDOW_AT, WINDOW_AT)
+            box([WINDOW_LENGTH, 1.0, WINDOW_HEIGHT]).apply_translation([x, 0.0, 0.0])
+            for x in (-WINDOW_AT, WINDOW_AT)
         ]
         parts.append(plate.difference(windows).apply_translation([0.0, side * PLATE_SPACING, 0.0]))
     for x in (-BAR_AT, BAR_AT):
@@ -65,7 +66,9 @@ def thruster() -> Trimesh:
     reach = 0.5 * (DUCT_INNER + DUCT_OUTER)
     for turn in np.arange(3) * 2.0 * np.pi / 3.0:
         strut = box([reach, STRUT, STRUT]).apply_translation([0.5 * reach, 0.0, 0.0])
-        struts.append(strut.apply_transform(trimesh.transformations.rotation_matrix(turn, [0.0, 0.0, 1.0])))
+        struts.append(
+            strut.apply_transform(trimesh.transformations.rotation_matrix(turn, [0.0, 0.0, 1.0]))
+        )
     return trimesh.boolean.union([duct, motor, *struts])
 
 

@@ -43,7 +43,9 @@ def floating(mesh, volume, rotation=None):
     """The height at which `mesh` has a submerged volume."""
     turn = np.eye(3) if rotation is None else rotation
     z = mesh.vertices @ turn.T[:, 2]
-    return brentq(lambda h: submerge(mesh, (0, 0, h), turn).volume - volume, -z.max(), -z.min(), xtol=1e-14)
+    return brentq(
+        lambda h: submerge(mesh, (0, 0, h), turn).volume - volume, -z.max(), -z.min(), xtol=1e-14
+    )
 
 
 def righting_arm(mesh, centre_of_gravity, volume, heel):
@@ -112,7 +114,10 @@ def cone(half_angle_radius, height, sections=512, apex_up=True):
     i = np.arange(sections)
     j = (i + 1) % sections
     faces = np.vstack(
-        [np.column_stack([j, i, np.full(sections, sections)]), np.column_stack([i, j, np.full(sections, sections + 1)])]
+        [
+            np.column_stack([j, i, np.full(sections, sections)]),
+            np.column_stack([i, j, np.full(sections, sections + 1)]),
+        ]
     )
     return TriMesh(vertices, faces if apex_up else faces[:, ::-1])
 
@@ -160,7 +165,9 @@ def directly(mesh, position, turn, water, time):
                 wet.append(one + one[3] / (one[3] - other[3]) * (other - one))
         for b, c in itertools.pairwise(wet[1:]):
             corners = np.array([wet[0], b, c])
-            area = 0.5 * np.cross(corners[1, :3] - corners[0, :3], corners[2, :3] - corners[0, :3])[2]
+            area = (
+                0.5 * np.cross(corners[1, :3] - corners[0, :3], corners[2, :3] - corners[0, :3])[2]
+            )
             # a rule of degree two: the middles of the edges
             for m in 0.5 * (corners + np.roll(corners, 1, axis=0)):
                 volume -= area / 3.0 * m[3]

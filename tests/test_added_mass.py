@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import Buoyancy, ModelError, RegularWave, Water, add_water, water_in
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
-from buoyancy_mj.loads.added_mass import ellipsoid, estimated
+from buoyancy_mj.loads.added_mass import ellipsoid_added_mass, estimate_added_mass
 from tests import vessels
 
 DIAGONAL = np.array([3.0, 9.0, 14.0, 0.2, 0.5, 0.4])
@@ -21,7 +21,7 @@ DIAGONAL = np.array([3.0, 9.0, 14.0, 0.2, 0.5, 0.4])
 
 
 def test_a_sphere_carries_half_its_volume():
-    assert ellipsoid((0.3, 0.3, 0.3), 1000.0) == pytest.approx(
+    assert ellipsoid_added_mass((0.3, 0.3, 0.3), 1000.0) == pytest.approx(
         [0.5 * 1000 * 4 / 3 * math.pi * 0.027] * 3 + [0.0] * 3, rel=1e-12
     )
 
@@ -29,18 +29,28 @@ def test_a_sphere_carries_half_its_volume():
 @pytest.mark.parametrize(
     ("ratio", "along", "across", "turning"),
     # Lamb 1932, art. 115: prolate spheroids, k1, k2, k'
-    [(1.5, 0.305, 0.621, 0.094), (2.0, 0.209, 0.702, 0.240), (3.99, 0.082, 0.860, 0.608), (9.97, 0.021, 0.960, 0.883)],
+    [
+        (1.5, 0.305, 0.621, 0.094),
+        (2.0, 0.209, 0.702, 0.240),
+        (3.99, 0.082, 0.860, 0.608),
+        (9.97, 0.021, 0.960, 0.883),
+    ],
 )
 def test_a_spheroid_has_lambs_coefficients(ratio, along, across, turning):
     mass = 4 / 3 * math.pi * ratio
-    found = ellipsoid((ratio, 1.0, 1.0), 1.0)
+    found = ellipsoid_added_mass((ratio, 1.0, 1.0), 1.0)
     # his table is good to a few units of its last digit
     assert found[:3] / mass == pytest.approx([along, across, across], abs=3e-3)
-    assert found[3:] / (0.2 * mass * (ratio**2 + 1)) == pytest.approx([0.0, turning, turning], abs=3e-3)
+    assert found[3:] / (0.2 * mass * (ratio**2 + 1)) == pytest.approx(
+        [0.0, turning, turning], abs=3e-3
+    )
     # and his formulas
     e = math.sqrt(1 - 1 / ratio**2)
     log = math.log((1 + e) / (1 - e))
-    alpha, beta = 2 * (1 - e * e) / e**3 * (0.5 * log - e), 1 / e**2 - (1 - e * e) / (2 * e**3) * log
+    alpha, beta = (
+        2 * (1 - e * e) / e**3 * (0.5 * log - e),
+        1 / e**2 - (1 - e * e) / (2 * e**3) * log,
+    )
     assert found[:2] / mass == pytest.approx([alpha / (2 - alpha), beta / (2 - beta)], rel=1e-9)
     k = e**4 * (beta - alpha) / ((2 - e * e) * (2 * e * e - (2 - e * e) * (beta - alpha)))
     assert found[4] / (0.2 * mass * (ratio**2 + 1)) == pytest.approx(k, rel=1e-8)
@@ -48,14 +58,16 @@ def test_a_spheroid_has_lambs_coefficients(ratio, along, across, turning):
 
 def test_a_thin_disc_has_its_limits():
     # Lamb 1932, art. 102, 108: broadside 8/3 rho a^3, about a diameter 16/45 rho a^5
-    found = ellipsoid((1.0, 1.0, 1e-5), 1.0)
+    found = ellipsoid_added_mass((1.0, 1.0, 1e-5), 1.0)
     assert found[2] == pytest.approx(8 / 3, rel=1e-4)
     assert found[3] == pytest.approx(16 / 45, rel=1e-4)
 
 
 def test_of_an_ellipsoid_the_estimate_is_its_own_wherever_it_sits():
-    model = vessels.of_geoms('<geom type="ellipsoid" size=".5 .3 .2" pos=".1 .2 -.1" euler="20 30 40" mass="9"/>')
-    matrix = estimated(displacing_hulls(model), 1025.0)
+    model = vessels.of_geoms(
+        '<geom type="ellipsoid" size=".5 .3 .2" pos=".1 .2 -.1" euler="20 30 40" mass="9"/>'
+    )
+    matrix = estimate_added_mass(find_hulls(model), 1025.0)
     turn = np.empty(9)
     mujoco.mju_quat2Mat(turn, model.geom_quat[0])
     axes = np.kron(np.eye(2), turn.reshape(3, 3))
@@ -64,7 +76,9 @@ def test_of_an_ellipsoid_the_estimate_is_its_own_wherever_it_sits():
     x, y, z = -model.geom_pos[0]
     back[:3, 3:] = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]).T
     own = axes.T @ back.T @ matrix @ back @ axes
-    assert own == pytest.approx(np.diag(ellipsoid((0.5, 0.3, 0.2), 1025.0)), abs=2e-3 * matrix.max())
+    assert own == pytest.approx(
+        np.diag(ellipsoid_added_mass((0.5, 0.3, 0.2), 1025.0)), abs=2e-3 * matrix.max()
+    )
 
 
 def test_two_hulls_of_one_body_count_together():
@@ -72,7 +86,9 @@ def test_two_hulls_of_one_body_count_together():
     two = vessels.of_geoms(
         '<geom type="box" size=".5 .3 .2" pos=".5 0 0" mass="9"/><geom type="box" size=".5 .3 .2" pos="-.5 0 0"/>'
     )
-    assert estimated(displacing_hulls(two), 1000.0) == pytest.approx(estimated(displacing_hulls(one), 1000.0), abs=1e-6)
+    assert estimate_added_mass(find_hulls(two), 1000.0) == pytest.approx(
+        estimate_added_mass(find_hulls(one), 1000.0), abs=1e-6
+    )
 
 
 # the engine's mass matrix
@@ -108,7 +124,9 @@ def moved(model, seed=3):
 @pytest.mark.parametrize("native", [True, False])
 def test_each_bodys_matrix_enters_as_its_jacobians_say(native):
     matrices = {"hull": random_matrix(1, 5.0), "arm": random_matrix(2, 0.5)}
-    model = mujoco.MjModel.from_xml_string(ARM.format(hull=words(matrices["hull"]), arm=words(matrices["arm"])))
+    model = mujoco.MjModel.from_xml_string(
+        ARM.format(hull=words(matrices["hull"]), arm=words(matrices["arm"]))
+    )
     data = moved(model)
     mujoco.mj_forward(model, data)
     plain, full = np.zeros((model.nv, model.nv)), np.zeros((model.nv, model.nv))
@@ -129,7 +147,9 @@ def test_each_bodys_matrix_enters_as_its_jacobians_say(native):
 @pytest.mark.parametrize("native", [True, False])
 def test_a_pass_over_the_same_pose_adds_it_once(native):
     # finite differences of velocities go over a pass without computing the mass matrix anew
-    model = mujoco.MjModel.from_xml_string(ARM.format(hull=words(DIAGONAL), arm=words(0.1 * DIAGONAL)))
+    model = mujoco.MjModel.from_xml_string(
+        ARM.format(hull=words(DIAGONAL), arm=words(0.1 * DIAGONAL))
+    )
     data = moved(model)
     a, again = np.zeros((2, 2 * model.nv, 2 * model.nv))
     with Buoyancy(model).installed(native=native):
@@ -197,12 +217,16 @@ def test_a_neutral_body_moves_by_kirchhoffs_equations_in_any_current(native, cur
     v, w = np.array([0.5, -0.3, 0.2]), np.array([0.3, 0.8, -0.4])
     data = mujoco.MjData(model)
     data.qvel[:] = [*(v + current), *w]
-    with Buoyancy(model, Water(current=current), drag=None, added_mass={"b": added}).installed(native=native):
+    with Buoyancy(model, Water(current=current), drag=None, added_mass={"b": added}).installed(
+        native=native
+    ):
         while data.time < 2.0 - 1e-9:
             mujoco.mj_step(model, data)
     end, turn = kirchhoff(45.0, inertia, added, v, w, 2.0)
     assert data.qvel[3:] == pytest.approx(end[3:], abs=2e-5)
-    assert data.body("b").xmat.reshape(3, 3) == pytest.approx(turn, abs=4e-3)  # of the beginning of the last step
+    assert data.body("b").xmat.reshape(3, 3) == pytest.approx(
+        turn, abs=4e-3
+    )  # of the beginning of the last step
     assert data.qvel[:3] - current == pytest.approx(turn @ end[:3], abs=2e-4)
 
 
@@ -253,7 +277,9 @@ def test_the_bluerov2_heavy_rolls_and_pitches_with_its_periods():
         when = np.array(times)[k] - 0.005 * x[k] / (x[k + 1] - x[k])
         # free to sway, it turns about a point between G and B: the moment about the centre of buoyancy differs by m z^2
         assert np.diff(when).mean() == pytest.approx(published, rel=1e-2)
-        assert 2 * math.pi * math.sqrt(moment / (13.4 * 9.81 * 0.01)) == pytest.approx(published, rel=1e-3)
+        assert 2 * math.pi * math.sqrt(moment / (13.4 * 9.81 * 0.01)) == pytest.approx(
+            published, rel=1e-3
+        )
 
 
 def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
@@ -274,7 +300,9 @@ def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
     orbit = 0.002 * math.exp(-k * 1.0)
     water = Water(waves=wave)
     places = []
-    with Buoyancy(model, water, drag=None, pressure="froude-krylov", added_mass="estimate").installed():
+    with Buoyancy(
+        model, water, drag=None, pressure="froude-krylov", added_mass="estimate"
+    ).installed():
         while data.time < wave.period:
             places.append(data.qpos[:3].copy())
             mujoco.mj_step(model, data)
@@ -286,7 +314,12 @@ def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
 
 
 def test_acceleration_is_the_rate_of_the_velocity():
-    waves = Water(waves=[RegularWave(0.1, wavelength=5.0, direction=0.7), RegularWave(0.2, period=3.0, depth=4.0)]).rows
+    waves = Water(
+        waves=[
+            RegularWave(0.1, wavelength=5.0, direction=0.7),
+            RegularWave(0.2, period=3.0, depth=4.0),
+        ]
+    ).rows
     for point in ((0.3, 0.2, -0.5), (2.0, -1.0, -3.0)):
         ends = np.zeros((2, 3))
         add_velocity(waves, *point, 1.0 + 1e-5, ends[0])
@@ -358,7 +391,9 @@ def test_what_the_model_states_comes_before_an_estimate():
 
 
 def test_above_the_water_nothing_is_added():
-    model = mujoco.MjModel.from_xml_string(ARM.format(hull=words(DIAGONAL), arm=words(DIAGONAL)).replace("0 0 -3", "0 0 9"))
+    model = mujoco.MjModel.from_xml_string(
+        ARM.format(hull=words(DIAGONAL), arm=words(DIAGONAL)).replace("0 0 -3", "0 0 9")
+    )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     plain = data.M.copy()
@@ -371,18 +406,30 @@ def test_above_the_water_nothing_is_added():
     ("given", "message"),
     [
         ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
-        ({"boat": DIAGONAL}, "added mass is stated for body 'boat', which has no hull of its own; possible: arm, hull"),
+        (
+            {"boat": DIAGONAL},
+            "added mass is stated for body 'boat', which has no hull of its own; possible: arm, hull",
+        ),
         (
             {"hull": [1, 2, 3]},
             "the added mass of body 'hull' has 3 numbers; it must be 6, its diagonal, or all 36",
         ),
-        ({"hull": [1, 2, 3, 4, 5, math.nan]}, "the added mass of body 'hull' holds nan; its numbers must be finite"),
-        ({"hull": "heavy"}, "the added mass of body 'hull' is 'heavy'; it must be 6 numbers or a 6 x 6 matrix"),
+        (
+            {"hull": [1, 2, 3, 4, 5, math.nan]},
+            "the added mass of body 'hull' holds nan; its numbers must be finite",
+        ),
+        (
+            {"hull": "heavy"},
+            "the added mass of body 'hull' is 'heavy'; it must be 6 numbers or a 6 x 6 matrix",
+        ),
         (
             {"hull": np.eye(6) + np.eye(6, k=1)},
             "the added mass of body 'hull' is not symmetric; average it with its transpose",
         ),
-        ({"hull": -DIAGONAL}, "has a negative eigenvalue, -14; the water would push it on: check the signs"),
+        (
+            {"hull": -DIAGONAL},
+            "has a negative eigenvalue, -14; the water would push it on: check the signs",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_told(given, message):
@@ -395,7 +442,10 @@ def test_a_body_whose_inertia_is_kept_as_a_diagonal_takes_what_fits():
     model = vessels.of_geoms('<geom type="box" size=".2 .2 .2" mass="5"/>')
     assert (model.M_rownnz == 1).all()
     with pytest.raises(
-        ModelError, match=r"MuJoCo keeps the inertia of body 'hull' as a diagonal, .* move one of them by a hair"
+        ModelError,
+        match=r"MuJoCo keeps the inertia of body 'hull' as a diagonal, .* move one of them by a hair",
     ):
         Buoyancy(model, added_mass={"hull": DIAGONAL})
-    assert len(Buoyancy(model, added_mass={"hull": [2, 2, 2, 0.1, 0.2, 0.3]}).added_mass.bodies) == 1
+    assert (
+        len(Buoyancy(model, added_mass={"hull": [2, 2, 2, 0.1, 0.2, 0.3]}).added_mass.bodies) == 1
+    )

@@ -9,7 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import BallastError, BuoyancyWarning, ModelError, Water, ballast, equilibrium, hydrostatics, righting_arm
+from buoyancy_mj import (
+    BallastError,
+    BuoyancyWarning,
+    ModelError,
+    Water,
+    ballast,
+    equilibrium,
+    hydrostatics,
+    righting_arm,
+)
 
 # a box that floats at 0.3 m, with places on its bottom, outside and in
 RAFT = """<mujoco><worldbody><body name="raft"><freejoint/>
@@ -77,7 +86,9 @@ def test_neutral_with_a_wanted_bg_is_reached_by_the_lowest_ballast():
 def test_a_reserve_is_left():
     spec = raft()
     result = ballast(spec.compile(), Water(density=1025.0), reserve=2.5)
-    assert hydrostatics(put(spec, result), Water(density=1025.0)).reserve == pytest.approx(2.5, rel=1e-9)
+    assert hydrostatics(put(spec, result), Water(density=1025.0)).reserve == pytest.approx(
+        2.5, rel=1e-9
+    )
 
 
 def test_foam_lifts_what_is_too_heavy_and_displaces_its_own_volume():
@@ -120,23 +131,29 @@ def test_joints_are_held_and_another_pose_needs_another_ballast():
 
 
 def test_the_vehicles_own_choice_of_geoms_takes_the_foam_in():
-    text = RAFT.replace("<worldbody>", '<custom><text name="buoyancy_geoms" data="hull"/></custom><worldbody>')
+    text = RAFT.replace(
+        "<worldbody>", '<custom><text name="buoyancy_geoms" data="hull"/></custom><worldbody>'
+    )
     spec = raft(text.replace('mass="300"', 'mass="1300"'))
     result = ballast(spec.compile(), reserve=0.0)
     model = put(spec, result)
-    assert hydrostatics(model, qpos=[0, 0, -5, 1, 0, 0, 0]).reserve == pytest.approx(0.0, abs=2e-3 * 1300)
+    assert hydrostatics(model, qpos=[0, 0, -5, 1, 0, 0, 0]).reserve == pytest.approx(
+        0.0, abs=2e-3 * 1300
+    )
     # and keeps it through XML
     again = mujoco.MjModel.from_xml_string(spec.to_xml())
-    assert hydrostatics(again, qpos=[0, 0, -5, 1, 0, 0, 0]).reserve == pytest.approx(0.0, abs=2e-3 * 1300)
+    assert hydrostatics(again, qpos=[0, 0, -5, 1, 0, 0, 0]).reserve == pytest.approx(
+        0.0, abs=2e-3 * 1300
+    )
 
 
 def test_the_wanted_heel_is_where_the_righting_arm_vanishes():
     spec = raft()
     model = put(spec, ballast(spec.compile(), draft=0.3, heel=0.1))
     assert righting_arm(model, heel=[0.1]).gz == pytest.approx(0.0, abs=1e-6)
-    assert Rotation.from_quat(equilibrium(model).qpos[3:], scalar_first=True).as_euler("ZYX")[2] == pytest.approx(
-        0.1, abs=1e-6
-    )
+    assert Rotation.from_quat(equilibrium(model).qpos[3:], scalar_first=True).as_euler("ZYX")[
+        2
+    ] == pytest.approx(0.1, abs=1e-6)
 
 
 # what cannot be
@@ -163,7 +180,10 @@ def test_the_wanted_heel_is_where_the_righting_arm_vanishes():
         ),
         ({"draft": -0.1}, r"a draft of -0\.1 m is wanted"),
         ({"draft": 0.4, "masses": [[0.5, 0, 0], [0.9, 0.1, 0.1]]}, "these places cannot level it"),
-        ({"draft": 0.3, "foam": "inside"}, "foam at 'inside' lies inside hull 'hull', where it displaces nothing more"),
+        (
+            {"draft": 0.3, "foam": "inside"},
+            "foam at 'inside' lies inside hull 'hull', where it displaces nothing more",
+        ),
     ],
 )
 def test_what_these_places_cannot_do_is_told_with_what_they_can(arguments, message):
@@ -174,7 +194,8 @@ def test_what_these_places_cannot_do_is_told_with_what_they_can(arguments, messa
 def test_without_a_place_the_missing_mass_is_told():
     model = raft(RAFT.replace("ballast_", "b_")).compile()
     with pytest.raises(
-        BallastError, match=r"\+300 kg are wanted.* name sites 'ballast...' and 'foam...', or give masses or"
+        BallastError,
+        match=r"\+300 kg are wanted.* name sites 'ballast...' and 'foam...', or give masses or",
     ):
         ballast(model, draft=0.3)
     with pytest.raises(BallastError, match="it is 900 kg too light for that; give masses a place"):
@@ -188,7 +209,10 @@ def test_without_a_place_the_missing_mass_is_told():
         ({"draft": 0.2, "reserve": 0.0}, "ballast needs either a draft"),
         ({"draft": math.nan}, "all must be finite"),
         ({"draft": 0.2, "mass_density": 0.0}, "densities positive"),
-        ({"draft": 0.2, "masses": "lead*"}, r"no site of the vessel matches 'lead\*'; possible: ballast_aft, "),
+        (
+            {"draft": 0.2, "masses": "lead*"},
+            r"no site of the vessel matches 'lead\*'; possible: ballast_aft, ",
+        ),
         ({"draft": 0.2, "masses": [[0, 0, 0]]}, r"must be its lowest and highest corner \(2, 3\)"),
         ({"draft": 0.2, "masses": [[1, 0, 0], [0, 1, 1]]}, "must be its lowest and highest corner"),
     ],
@@ -199,14 +223,18 @@ def test_what_makes_no_sense_is_told(arguments, message):
 
 
 def test_an_unstable_wish_is_granted_with_a_warning():
-    text = RAFT.replace('pos="0 .4 -.25"', 'pos="0 .4 1.5"').replace('pos="0 -.4 -.25"', 'pos="0 -.4 1.5"')
+    text = RAFT.replace('pos="0 .4 -.25"', 'pos="0 .4 1.5"').replace(
+        'pos="0 -.4 -.25"', 'pos="0 -.4 1.5"'
+    )
     with pytest.warns(BuoyancyWarning, match="it is not stable: GM is -"):
         ballast(raft(text).compile(), draft=0.3, masses=["ballast_port", "ballast_starboard"])
 
 
 def test_foam_that_overlaps_the_hull_is_told():
     text = RAFT.replace('mass="300"', 'mass="1300"').replace('pos="0 0 .6"', 'pos="0 0 .35"')
-    with pytest.warns(BuoyancyWarning, match=r"'hull' and 'foam_top' overlap by .* place them apart"):
+    with pytest.warns(
+        BuoyancyWarning, match=r"'hull' and 'foam_top' overlap by .* place them apart"
+    ):
         ballast(raft(text).compile(), reserve=0.0)
 
 
@@ -214,14 +242,20 @@ def test_ballasting_twice_is_told():
     spec = raft()
     result = ballast(spec.compile(), draft=0.3)
     result.add_to(spec)
-    with pytest.raises(ModelError, match=r"body 'ballast_\w+' is there already; ballast the vehicle as it was"):
+    with pytest.raises(
+        ModelError, match=r"body 'ballast_\w+' is there already; ballast the vehicle as it was"
+    ):
         result.add_to(spec)
 
 
 def test_another_vehicle_is_told():
     result = ballast(raft().compile(), draft=0.3)
-    with pytest.raises(ModelError, match="there is no body 'raft' to carry the ballast; possible: boat, world"):
-        result.add_to(mujoco.MjSpec.from_string(RAFT.replace('body name="raft"', 'body name="boat"')))
+    with pytest.raises(
+        ModelError, match="there is no body 'raft' to carry the ballast; possible: boat, world"
+    ):
+        result.add_to(
+            mujoco.MjSpec.from_string(RAFT.replace('body name="raft"', 'body name="boat"'))
+        )
 
 
 def test_masses_and_their_moments_add_up():

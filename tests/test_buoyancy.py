@@ -8,7 +8,7 @@ import pytest
 from mujoco import rollout
 
 from buoyancy_mj import Buoyancy, Drag, LevelOscillation, ModelError, RegularWave, Water
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 
 BOX = """
 <mujoco>
@@ -23,7 +23,9 @@ INTEGRATORS = ["Euler", "RK4", "implicit", "implicitfast", "discrete"]
 
 
 def box(integrator="implicitfast", gravity="0 0 -9.81", flag="energy='disable'", z=0.1):
-    model = mujoco.MjModel.from_xml_string(BOX.format(integrator=integrator, gravity=gravity, flag=flag, z=z))
+    model = mujoco.MjModel.from_xml_string(
+        BOX.format(integrator=integrator, gravity=gravity, flag=flag, z=z)
+    )
     return model, mujoco.MjData(model)
 
 
@@ -54,7 +56,9 @@ def test_the_force_is_rho_g_v_at_the_centroid_of_what_is_wet():
     volume, centroid = float(loads.total.volume), loads.total.centroid
     assert loads.total.force == pytest.approx([0.0, 0.0, 1025.0 * 9.81 * volume])
     assert loads.body.force[1] == pytest.approx(loads.total.force)
-    assert loads.body.torque[1] == pytest.approx(np.cross(centroid - data.xipos[1], loads.total.force))
+    assert loads.body.torque[1] == pytest.approx(
+        np.cross(centroid - data.xipos[1], loads.total.force)
+    )
     assert loads.hull.torque[0] == pytest.approx(loads.body.torque[1])
     assert loads.xfrc[1] == pytest.approx([*loads.body.force[1], *loads.body.torque[1]])
 
@@ -85,7 +89,9 @@ def test_hulls_add_up_to_bodies_and_bodies_to_the_total():
     data.qvel[:] = 0.1
     mujoco.mj_forward(model, data)
     loads = Buoyancy(model).evaluate(data)
-    assert loads.body.volume == pytest.approx([0.0, loads.hull.volume[:2].sum(), loads.hull.volume[2]])
+    assert loads.body.volume == pytest.approx(
+        [0.0, loads.hull.volume[:2].sum(), loads.hull.volume[2]]
+    )
     assert loads.total.volume == pytest.approx(loads.hull.volume.sum())
     # the volume-weighted global centroid of the source paper
     weighed = loads.hull.volume @ loads.hull.centroid / loads.hull.volume.sum()
@@ -96,14 +102,19 @@ def test_hulls_add_up_to_bodies_and_bodies_to_the_total():
     # one resultant at the global centroid acts like the forces on each hull
     com = Buoyancy(model).centre_of_mass(data)
     one = np.cross(loads.total.centroid - com, [0, 0, loads.by_cause["buoyancy"][:, 2].sum()])
-    each = sum(np.cross(c - com, f) for c, f in zip(loads.hull.centroid, loads.hull.force, strict=True))
+    each = sum(
+        np.cross(c - com, f) for c, f in zip(loads.hull.centroid, loads.hull.force, strict=True)
+    )
     assert one == pytest.approx(each)
 
 
 def test_evaluating_writes_nothing():
     model, data = box()
     mujoco.mj_forward(model, data)
-    before = {name: getattr(data, name).copy() for name in ("qfrc_passive", "xfrc_applied", "qfrc_applied", "qacc", "qpos")}
+    before = {
+        name: getattr(data, name).copy()
+        for name in ("qfrc_passive", "xfrc_applied", "qfrc_applied", "qacc", "qpos")
+    }
     Buoyancy(model).evaluate(data)
     for name, value in before.items():
         assert np.array_equal(getattr(data, name), value), name
@@ -125,7 +136,9 @@ def test_gravity_is_the_models():
     for gravity in (9.81, 1.62):
         model, data = box(gravity=f"0 0 -{gravity}", z=-1.0)
         mujoco.mj_forward(model, data)
-        assert Buoyancy(model, drag=None).evaluate(data).total.force[2] == pytest.approx(1000.0 * gravity * 0.024)
+        assert Buoyancy(model, drag=None).evaluate(data).total.force[2] == pytest.approx(
+            1000.0 * gravity * 0.024
+        )
 
 
 @pytest.mark.parametrize("flag", ["gravity='disable'", None])
@@ -140,12 +153,18 @@ def test_without_gravity_there_is_no_buoyancy(flag):
 
 @pytest.mark.parametrize("gravity", ["0 0 9.81", "0 -9.81 0", "0.1 0 -9.81"])
 def test_gravity_in_another_direction_is_refused(gravity):
-    with pytest.raises(ModelError, match=r"gravity is .*; water needs it along -z: set <option gravity='0 0 -9.81'/>"):
+    with pytest.raises(
+        ModelError,
+        match=r"gravity is .*; water needs it along -z: set <option gravity='0 0 -9.81'/>",
+    ):
         Buoyancy(box(gravity=gravity)[0])
 
 
 def test_a_model_whose_callback_would_be_skipped_is_refused():
-    with pytest.raises(ModelError, match="this model disables actuation, and MuJoCo then skips the control callback"):
+    with pytest.raises(
+        ModelError,
+        match="this model disables actuation, and MuJoCo then skips the control callback",
+    ):
         Buoyancy(box(flag="actuation='disable'")[0])
     model, _ = box()
     buoyancy = Buoyancy(model)
@@ -162,7 +181,10 @@ def test_springs_and_dampers_may_be_disabled():
 
 
 def test_a_model_whose_bodies_would_sleep_through_waves_is_refused():
-    with pytest.raises(ModelError, match="lets bodies at rest sleep, and MuJoCo does not wake them for water that moves"):
+    with pytest.raises(
+        ModelError,
+        match="lets bodies at rest sleep, and MuJoCo does not wake them for water that moves",
+    ):
         Buoyancy(box(flag="sleep='enable'")[0])
 
 
@@ -175,7 +197,9 @@ def test_threads_that_share_one_buoyancy_do_not_disturb_each_other():
     ends = []
     with Buoyancy(model).installed():
         for threads in (1, 4):
-            states, _ = rollout.rollout(model, [mujoco.MjData(model) for _ in range(threads)], starts, nstep=100)
+            states, _ = rollout.rollout(
+                model, [mujoco.MjData(model) for _ in range(threads)], starts, nstep=100
+            )
             ends.append(states[:, -1])
     assert np.array_equal(*ends)
 
@@ -386,7 +410,10 @@ def test_one_buoyancy_serves_several_data():
 
 def test_two_models_live_in_one_process():
     (one, one_data), (two, two_data) = box(z=0.1), box(z=0.1)
-    with Buoyancy(one, Water(density=1000.0)).installed(), Buoyancy(two, Water(density=500.0)).installed():
+    with (
+        Buoyancy(one, Water(density=1000.0)).installed(),
+        Buoyancy(two, Water(density=500.0)).installed(),
+    ):
         for _ in range(20000):
             mujoco.mj_step(one, one_data)
             mujoco.mj_step(two, two_data)
@@ -493,7 +520,7 @@ def test_each_body_gets_its_own_wrench():
     data.qpos[2], data.qpos[7] = -0.3, 0.4
     mujoco.mj_forward(model, data)
     loads = Buoyancy(model, drag=None).evaluate(data)
-    for hull in displacing_hulls(model):
+    for hull in find_hulls(model):
         assert loads.body.force[hull.body, 2] == pytest.approx(9810.0 * hull.mesh.volume)
         assert loads.body.centroid[hull.body] == pytest.approx(data.geom_xpos[hull.geom])
 

@@ -58,15 +58,41 @@ def test_json_is_all_that_is_printed(run):
 
 @pytest.mark.parametrize("method", ["exact", "convex_hull", "sections"])
 def test_a_method_is_chosen_and_its_options_set(run, method):
-    result = run("run", "hourglass_drop_still", "--method", method, "--duration", "0.1", "--no-record", "--json")
+    result = run(
+        "run",
+        "hourglass_drop_still",
+        "--method",
+        method,
+        "--duration",
+        "0.1",
+        "--no-record",
+        "--json",
+    )
     assert json.loads(result.stdout)["method"] == method
-    option = {"convex_hull": "method.cut=true", "sections": "method.step=0.01", "exact": "duration=0.05"}[method]
-    with_option = run("run", "auv_waves", "--method", method, "--set", option, "--duration", "0.05", "--no-record", "--json")
+    option = {
+        "convex_hull": "method.cut=true",
+        "sections": "method.step=0.01",
+        "exact": "duration=0.05",
+    }[method]
+    with_option = run(
+        "run",
+        "auv_waves",
+        "--method",
+        method,
+        "--set",
+        option,
+        "--duration",
+        "0.05",
+        "--no-record",
+        "--json",
+    )
     assert with_option.exit_code == 0, with_option.output
 
 
 def test_an_unknown_method_is_told(run):
-    one_sentence(run("run", "auv_waves", "--method", "hull", "--no-record"), "unknown kind 'hull'; .*exact")
+    one_sentence(
+        run("run", "auv_waves", "--method", "hull", "--no-record"), "unknown kind 'hull'; .*exact"
+    )
     one_sentence(
         run("run", "auv_waves", "--method", "exact", "--set", "method.cut=true", "--no-record"),
         "unknown key 'cut'; possible: tolerance",
@@ -74,7 +100,16 @@ def test_an_unknown_method_is_told(run):
 
 
 def test_flags_reach_the_scene(run):
-    arguments = ("--duration", "0.3", "--timestep", "0.05", "--set", "water.density=500", "--no-record", "--json")
+    arguments = (
+        "--duration",
+        "0.3",
+        "--timestep",
+        "0.05",
+        "--set",
+        "water.density=500",
+        "--no-record",
+        "--json",
+    )
     summary = json.loads(run("run", "hourglass_drop_still", *arguments).stdout)
     assert summary["simulated_time"] == pytest.approx(0.3)
     assert summary["displacement"] == pytest.approx(6.2996, abs=1e-3)
@@ -82,18 +117,39 @@ def test_flags_reach_the_scene(run):
 
 def test_a_vehicle_is_swapped_in_from_where_the_user_stands(run, tmp_path):
     (tmp_path / "my.xml").write_text(BOX)
-    result = run("run", "auv_waves", "--vehicle", "my.xml", "--duration", "0.1", "--record", "out/my.rrd", "--json")
+    result = run(
+        "run",
+        "auv_waves",
+        "--vehicle",
+        "my.xml",
+        "--duration",
+        "0.1",
+        "--record",
+        "out/my.rrd",
+        "--json",
+    )
     assert json.loads(result.stdout)["mass"] == pytest.approx(4.0), result.output
     assert (tmp_path / "out" / "my.rrd").exists()
 
 
 def test_a_shipped_vehicle_is_swapped_in_by_name(run):
-    result = run("run", "auv_waves", "--vehicle", "hourglass", "--duration", "0.1", "--no-record", "--json")
+    result = run(
+        "run", "auv_waves", "--vehicle", "hourglass", "--duration", "0.1", "--no-record", "--json"
+    )
     assert json.loads(result.stdout)["mass"] == pytest.approx(9.2)
 
 
 def test_geoms_choose_what_displaces(run):
-    arguments = ("--geoms", "foam*", "--geoms", "battery_pod", "--duration", "0.1", "--no-record", "--json")
+    arguments = (
+        "--geoms",
+        "foam*",
+        "--geoms",
+        "battery_pod",
+        "--duration",
+        "0.1",
+        "--no-record",
+        "--json",
+    )
     summary = json.loads(run("run", "auv_waves", *arguments).stdout)
     assert summary["displacement"] == pytest.approx(2 * 1.071 + 3.463, abs=2e-3)
     assert summary["net_weight"] > 0.0
@@ -110,7 +166,9 @@ def test_notices_go_to_the_standard_error(run, tmp_path):
     (tmp_path / "my.xml").write_text(
         BOX.replace("<worldbody>", '<worldbody><geom name="ground" type="plane" size="1 1 1"/>')
     )
-    result = run("run", "auv_waves", "--vehicle", "my.xml", "--duration", "0.1", "--no-record", "--json")
+    result = run(
+        "run", "auv_waves", "--vehicle", "my.xml", "--duration", "0.1", "--no-record", "--json"
+    )
     assert "note: the vehicle's ground plane 'ground'" in result.stderr
     json.loads(result.stdout)
 
@@ -121,24 +179,53 @@ def test_notices_go_to_the_standard_error(run, tmp_path):
         (("auv_wave",), r"error: there is no scene 'auv_wave'.*did you mean 'auv_waves'\?"),
         (("auv_waves", "--vehicle", "none.xml"), r"error: there is no vehicle 'none.xml'"),
         (("auv_waves", "--vehicle", "bad.xml"), r"error: MuJoCo cannot read '.*bad.xml'.*XML"),
-        (("auv_waves", "--vehicle", "tub.xml"), r"error: mesh 'tub' of geom 'tub': it is open: 1 hole"),
-        (("auv_waves", "--vehicle", "fixed.xml"), r"error: '.*fixed.xml' has no body that could float"),
-        (("auv_waves", "--vehicle", "up.xml"), r"error: gravity is 0 0 9.81; water needs it along -z"),
-        (("auv_waves", "--set", "watr.level=1"), r"error: scene 'auv_waves': unknown key 'watr'; did you mean 'water'\?"),
+        (
+            ("auv_waves", "--vehicle", "tub.xml"),
+            r"error: mesh 'tub' of geom 'tub': it is open: 1 hole",
+        ),
+        (
+            ("auv_waves", "--vehicle", "fixed.xml"),
+            r"error: '.*fixed.xml' has no body that could float",
+        ),
+        (
+            ("auv_waves", "--vehicle", "up.xml"),
+            r"error: gravity is 0 0 9.81; water needs it along -z",
+        ),
+        (
+            ("auv_waves", "--set", "watr.level=1"),
+            r"error: scene 'auv_waves': unknown key 'watr'; did you mean 'water'\?",
+        ),
         (("auv_waves", "--duration", "-1"), r"duration is -1; it must be at least 1e-06"),
         (("auv_waves", "--duration", "nan"), r"duration is nan"),
-        (("auv_waves", "--geoms", "hul*"), r"error: no moving geom matches 'hul\*'.*possible: ballast_port"),
-        (("auv_waves", "--vehicle", "~nobody-here/a.xml"), r"error: there is no vehicle '~nobody-here/a.xml'"),
+        (
+            ("auv_waves", "--geoms", "hul*"),
+            r"error: no moving geom matches 'hul\*'.*possible: ballast_port",
+        ),
+        (
+            ("auv_waves", "--vehicle", "~nobody-here/a.xml"),
+            r"error: there is no vehicle '~nobody-here/a.xml'",
+        ),
         (("x" * 300,), r"error: there is no scene 'xxx"),
-        (("auv_waves", "--record", "folder.rrd"), r"error: cannot write 'folder.rrd': it is a folder"),
-        (("auv_waves", "--record", "x.mp4"), r"error: --record is 'x.mp4'; a recording's name ends in .rrd"),
-        (("auv_waves", "--record", "x.rrd", "--no-record"), r"error: --record and --no-record contradict each other"),
+        (
+            ("auv_waves", "--record", "folder.rrd"),
+            r"error: cannot write 'folder.rrd': it is a folder",
+        ),
+        (
+            ("auv_waves", "--record", "x.mp4"),
+            r"error: --record is 'x.mp4'; a recording's name ends in .rrd",
+        ),
+        (
+            ("auv_waves", "--record", "x.rrd", "--no-record"),
+            r"error: --record and --no-record contradict each other",
+        ),
     ],
 )
 def test_bad_input_gets_one_sentence_and_leaves_nothing(run, tmp_path, arguments, message):
     (tmp_path / "bad.xml").write_text("<mujoco><worldbody>")
     (tmp_path / "fixed.xml").write_text("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
-    (tmp_path / "up.xml").write_text(BOX.replace("<worldbody>", "<option gravity='0 0 9.81'/><worldbody>"))
+    (tmp_path / "up.xml").write_text(
+        BOX.replace("<worldbody>", "<option gravity='0 0 9.81'/><worldbody>")
+    )
     vertices = "-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1"
     faces = "0 2 1 0 3 2 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7"
     (tmp_path / "tub.xml").write_text(
@@ -154,12 +241,26 @@ def test_bad_input_gets_one_sentence_and_leaves_nothing(run, tmp_path, arguments
 
 
 def test_a_diverging_run_keeps_its_recording(run, tmp_path):
-    text = BOX.replace('"box"><geom', '"box"><joint type="slide" axis="0 0 1" stiffness="3000"/><geom')
+    text = BOX.replace(
+        '"box"><geom', '"box"><joint type="slide" axis="0 0 1" stiffness="3000"/><geom'
+    )
     (tmp_path / "stiff.xml").write_text(text)
-    arguments = ("--vehicle", "stiff.xml", "--set", "timestep=0.1", "--set", "integrator=Euler", "--set", "drag=false")
+    arguments = (
+        "--vehicle",
+        "stiff.xml",
+        "--set",
+        "timestep=0.1",
+        "--set",
+        "integrator=Euler",
+        "--set",
+        "drag=false",
+    )
     result = run("run", "auv_waves", *arguments, "--record", "out.rrd")
     assert result.exit_code == 1
-    assert re.search(r"the recording up to .* s is in 'out.rrd'\nerror: the simulation diverged at .*\n$", result.stderr)
+    assert re.search(
+        r"the recording up to .* s is in 'out.rrd'\nerror: the simulation diverged at .*\n$",
+        result.stderr,
+    )
     assert "Nan, Inf" not in result.stderr
     assert not (tmp_path / "MUJOCO_LOG.TXT").exists()
     assert (tmp_path / "out.rrd").stat().st_size > 0
@@ -167,7 +268,14 @@ def test_a_diverging_run_keeps_its_recording(run, tmp_path):
 
 def test_brackets_and_pictures_in_names_are_only_text(run, tmp_path):
     (tmp_path / "boat \U0001f6a4.xml").write_text(BOX)
-    arguments = ("--vehicle", "boat \U0001f6a4.xml", "--set", 'title="a [/b] c"', "--record", "a[red]b.rrd")
+    arguments = (
+        "--vehicle",
+        "boat \U0001f6a4.xml",
+        "--set",
+        'title="a [/b] c"',
+        "--record",
+        "a[red]b.rrd",
+    )
     result = run("run", "auv_waves", "--duration", "0.05", *arguments)
     assert result.exit_code == 0, result.output
     assert "a [/b] c" in result.stdout
@@ -177,8 +285,20 @@ def test_brackets_and_pictures_in_names_are_only_text(run, tmp_path):
 @pytest.mark.slow
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
-    command = [sys.executable, "-m", "buoyancy_mj", "run", "auv_waves", "--duration", "10000", "--record", "out.rrd"]
-    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    command = [
+        sys.executable,
+        "-m",
+        "buoyancy_mj",
+        "run",
+        "auv_waves",
+        "--duration",
+        "10000",
+        "--record",
+        "out.rrd",
+    ]
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
     partial = tmp_path / "out.partial.rrd"
     deadline = time.monotonic() + 120.0
     while not (partial.exists() and partial.stat().st_size > 200_000):

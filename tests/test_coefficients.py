@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 import xarray
 
-from buoyancy_mj import Buoyancy, ModelError, SceneError, Simulation, read_coefficients, state_coefficients
+from buoyancy_mj import (
+    Buoyancy,
+    ModelError,
+    SceneError,
+    Simulation,
+    read_coefficients,
+    state_coefficients,
+)
 from buoyancy_mj.loads.coefficients import DOFS
 from buoyancy_mj.scenes.scene import scene_from_table
 
@@ -20,10 +27,14 @@ MASS = 1000.0 * 2.0 / 3.0 * math.pi * 125.0
 def hemisphere(tmp_path_factory):
     cpt = pytest.importorskip("capytaine")
     mesh = cpt.mesh_sphere(radius=5.0, resolution=(20, 20)).immersed_part()
-    body = cpt.FloatingBody(mesh=mesh, dofs=cpt.rigid_body_dofs(rotation_center=(0, 0, 0)), name="ball")
+    body = cpt.FloatingBody(
+        mesh=mesh, dofs=cpt.rigid_body_dofs(rotation_center=(0, 0, 0)), name="ball"
+    )
     grid = xarray.Dataset(coords={"omega": OMEGAS, "radiating_dof": list(body.dofs), "rho": 1000.0})
     path = tmp_path_factory.mktemp("bem") / "ball.nc"
-    cpt.export_dataset(path, cpt.BEMSolver().fill_dataset(grid, body, hydrostatics=False), format="netcdf")
+    cpt.export_dataset(
+        path, cpt.BEMSolver().fill_dataset(grid, body, hydrostatics=False), format="netcdf"
+    )
     return path
 
 
@@ -34,7 +45,10 @@ def made(path, names=DOFS, added=None, damping=None, **coords):
         "added_mass": np.diag(np.arange(1.0, n + 1)) if added is None else added,
         "radiation_damping": np.diag(np.arange(1.0, n + 1)) if damping is None else damping,
     }
-    data = {k: (("omega", "influenced_dof", "radiating_dof"), np.array([m, 10.0 * m])) for k, m in matrices.items()}
+    data = {
+        k: (("omega", "influenced_dof", "radiating_dof"), np.array([m, 10.0 * m]))
+        for k, m in matrices.items()
+    }
     coords |= {"omega": [1.0, 2.0], "influenced_dof": list(names), "radiating_dof": list(names)}
     xarray.Dataset(data, coords=coords).to_netcdf(path)
     return path
@@ -58,7 +72,9 @@ def test_a_model_takes_them_where_it_states_none_itself(hemisphere):
     )
     state_coefficients(spec, found)
     buoyancy = Buoyancy(spec.compile())
-    assert buoyancy.added_mass.matrices[0].reshape(6, 6) == pytest.approx(found["ball"].added_mass, rel=1e-12)
+    assert buoyancy.added_mass.matrices[0].reshape(6, 6) == pytest.approx(
+        found["ball"].added_mass, rel=1e-12
+    )
     assert "radiation" in buoyancy.causes
     own = spec.copy()
     state_coefficients(own, {"ball": read_coefficients(hemisphere, 6.0)["ball"]})
@@ -73,7 +89,12 @@ def test_a_scene_names_a_dataset(hemisphere, tmp_path):
         "</worldbody></mujoco>"
     )
     (tmp_path / "ball.nc").write_bytes(hemisphere.read_bytes())
-    table = {"title": "a ball", "vehicle": "ball.xml", "start": {"position": [0.0, 0.0, 1.0]}, "duration": 12.0}
+    table = {
+        "title": "a ball",
+        "vehicle": "ball.xml",
+        "start": {"position": [0.0, 0.0, 1.0]},
+        "duration": 12.0,
+    }
     table["coefficients"] = {"file": "ball.nc", "period": 4.4, "submerged": 0.5, "body": "float"}
     simulation = Simulation(scene_from_table(table, folder=tmp_path))
     added = read_coefficients(hemisphere, 4.4, submerged=0.5)["ball"].added_mass[2, 2] / 2
@@ -87,12 +108,19 @@ def test_a_scene_names_a_dataset(hemisphere, tmp_path):
 
     def told(message, **changed):
         with pytest.raises((ModelError, SceneError), match=message):
-            Simulation(scene_from_table(table | {"coefficients": table["coefficients"] | changed}, folder=tmp_path))
+            Simulation(
+                scene_from_table(
+                    table | {"coefficients": table["coefficients"] | changed}, folder=tmp_path
+                )
+            )
 
     told("the model has no body 'boat'", body="boat")
     told("none.nc' cannot be read: there is no such file", file="none.nc")
     told("period is -1.0 s", period=-1.0)
-    told("coefficients: unknown key 'depth'; possible: body, centre, file, period, submerged", depth=3)
+    told(
+        "coefficients: unknown key 'depth'; possible: body, centre, file, period, submerged",
+        depth=3,
+    )
     made(tmp_path / "two.nc", ["left__Heave", "right__Heave"])
     told("'two.nc' has the bodies left, right; name them as the model does", file="two.nc")
 
@@ -130,10 +158,19 @@ def test_added_mass_is_carried_from_its_centre_to_the_origin(tmp_path):
     ("how", "message"),
     [
         (lambda path: read_coefficients(path / "none.nc", 4.0), "none.nc' cannot be read"),
-        (lambda path: read_coefficients(made(path / "a.nc"), 0.0), "period is 0.0 s and submerged 1.0"),
+        (
+            lambda path: read_coefficients(made(path / "a.nc"), 0.0),
+            "period is 0.0 s and submerged 1.0",
+        ),
         (lambda path: read_coefficients(made(path / "a.nc"), 4.0, submerged=2.0), "at most 1"),
-        (lambda path: read_coefficients(made(path / "a.nc"), 4.0, centre=(1, 2)), "give one of three numbers"),
-        (lambda path: read_coefficients(made(path / "a.nc", ["Bend"]), 4.0), "by none of Surge, Sway, .*it has Bend"),
+        (
+            lambda path: read_coefficients(made(path / "a.nc"), 4.0, centre=(1, 2)),
+            "give one of three numbers",
+        ),
+        (
+            lambda path: read_coefficients(made(path / "a.nc", ["Bend"]), 4.0),
+            "by none of Surge, Sway, .*it has Bend",
+        ),
         (
             lambda path: read_coefficients(made(path / "a.nc", added=np.full((6, 6), np.nan)), 4.0),
             "holds added_mass that is no finite number at 2 rad/s",

@@ -4,9 +4,17 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj import Buoyancy, CurrentProfile, CurrentSeries, RegularWave, SceneError, Water, WaterError
+from buoyancy_mj import (
+    Buoyancy,
+    CurrentProfile,
+    CurrentSeries,
+    RegularWave,
+    SceneError,
+    Water,
+    WaterError,
+)
 from buoyancy_mj.scenes.scene import read_scene, scene_from_table
-from buoyancy_mj.settings.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.settings.settings import Settings, parse_plugin_config, write_plugin_config
 
 PROFILE = CurrentProfile((0.0, 2.0, 10.0), ((1.0, 0.0, 0.0), (0.5, 0.2, 0.0), (0.0, 0.0, 0.0)))
 SERIES = CurrentSeries((0.0, 10.0, 15.0), ((0.0, 0.0, 0.0), (1.0, -0.5, 0.0), (1.0, 0.0, 0.1)))
@@ -29,8 +37,16 @@ def test_a_series_is_straight_between_its_times_and_held_beyond_them(time):
     p = np.array([0.3, 0.2, -1.0])
     expected = [np.interp(time, SERIES.times, np.array(SERIES.velocities)[:, c]) for c in range(3)]
     assert water.velocity(p, time) - still.velocity(p, time) == pytest.approx(expected, abs=1e-15)
-    rate = (0.1, -0.05, 0.0) if 0.0 <= time < 10.0 else (0.0, 0.1, 0.02) if 10.0 <= time < 15.0 else (0.0, 0.0, 0.0)
-    assert water.acceleration(p, time) - still.acceleration(p, time) == pytest.approx(rate, abs=1e-15)
+    rate = (
+        (0.1, -0.05, 0.0)
+        if 0.0 <= time < 10.0
+        else (0.0, 0.1, 0.02)
+        if 10.0 <= time < 15.0
+        else (0.0, 0.0, 0.0)
+    )
+    assert water.acceleration(p, time) - still.acceleration(p, time) == pytest.approx(
+        rate, abs=1e-15
+    )
 
 
 def ball(drag=50.0, added=0.0):
@@ -63,18 +79,26 @@ def test_a_current_that_gathers_speed_takes_added_mass_along(native):
     mass = float(model.body_mass[1])
     with Buoyancy(model, Water(current=SERIES)).installed(native=native):
         mujoco.mj_step(model, data, 500)
-    assert data.qvel[:2] == pytest.approx(np.array([0.1, -0.05]) * 5.0 * 2.0 / (mass + 2.0), rel=1e-3)
+    assert data.qvel[:2] == pytest.approx(
+        np.array([0.1, -0.05]) * 5.0 * 2.0 / (mass + 2.0), rel=1e-3
+    )
 
 
 def test_currents_stand_in_scenes_and_in_models(tmp_path):
     for current in (PROFILE, SERIES, (0.1, 0.2, 0.3)):
-        texts = texts_from_settings(Settings(water=Water(current=current)))
-        assert settings_from_texts(texts, "here").water.current == current
-    table = {"kind": "profile", "depths": [0, 2, 10], "velocities": [[1, 0, 0], [0.5, 0.2, 0], [0, 0, 0]]}
+        texts = write_plugin_config(Settings(water=Water(current=current)))
+        assert parse_plugin_config(texts, "here").water.current == current
+    table = {
+        "kind": "profile",
+        "depths": [0, 2, 10],
+        "velocities": [[1, 0, 0], [0.5, 0.2, 0], [0, 0, 0]],
+    }
     scene = scene_from_table({"title": "t", "vehicle": "hourglass", "water": {"current": table}})
     assert scene.water.current == PROFILE
     # a file, beside the scene
-    (tmp_path / "tide.csv").write_text("time, u, v, w\n# s, m/s\n0, 0, 0, 0\n10, 1, -0.5, 0\n15, 1, 0, 0.1\n")
+    (tmp_path / "tide.csv").write_text(
+        "time, u, v, w\n# s, m/s\n0, 0, 0, 0\n10, 1, -0.5, 0\n15, 1, 0, 0.1\n"
+    )
     (tmp_path / "a.toml").write_text(
         'title = "t"\nvehicle = "hourglass"\n[water.current]\nkind = "series"\nfile = "tide.csv"\n'
     )
@@ -84,14 +108,23 @@ def test_currents_stand_in_scenes_and_in_models(tmp_path):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda: CurrentProfile((0.0, 0.0), ((0, 0, 0), (1, 0, 0))), "must grow from row to row; 0 follows 0"),
-        (lambda: CurrentProfile((0.0, 1.0), ((0, 0, 0),)), r"it has 2 depths, and velocities of shape \(1, 3\)"),
+        (
+            lambda: CurrentProfile((0.0, 0.0), ((0, 0, 0), (1, 0, 0))),
+            "must grow from row to row; 0 follows 0",
+        ),
+        (
+            lambda: CurrentProfile((0.0, 1.0), ((0, 0, 0),)),
+            r"it has 2 depths, and velocities of shape \(1, 3\)",
+        ),
         (
             lambda: CurrentProfile((0.0, 1.0), ((0, 0, 0), (np.nan, 0, 0))),
             r"velocities of the current hold .*nan.* in row 1",
         ),
         (lambda: CurrentSeries((), ()), "it has 0 times"),
-        (lambda: CurrentSeries((0.0, np.nan), ((0, 0, 0), (1, 0, 0))), "times of the current hold nan in row 1"),
+        (
+            lambda: CurrentSeries((0.0, np.nan), ((0, 0, 0), (1, 0, 0))),
+            "times of the current hold nan in row 1",
+        ),
         (lambda: CurrentSeries("ab", 3), r"needs as many times as velocities"),
         (lambda: Water(current=(1.0, np.nan, 0.0)), "it must be three finite numbers"),
     ],
@@ -122,10 +155,16 @@ def test_a_missing_file_and_an_unknown_kind_are_told(tmp_path):
     with pytest.raises(WaterError, match="cannot be read"):
         CurrentSeries.read(tmp_path / "none.csv")
     for current, message in (
-        ({"kind": "tidal"}, "kind is 'tidal'; .*possible: profile, series, or a list of 3 numbers instead"),
+        (
+            {"kind": "tidal"},
+            "kind is 'tidal'; .*possible: profile, series, or a list of 3 numbers instead",
+        ),
         ({"kind": "series", "file": "none.csv"}, "cannot be read"),
         ({"kind": "series", "file": 3}, "a series has a file, a text, and nothing else"),
         ({"kind": "profile", "depths": [0]}, "'velocities' is missing"),
     ):
         with pytest.raises(SceneError, match=message):
-            scene_from_table({"title": "t", "vehicle": "hourglass", "water": {"current": current}}, folder=tmp_path)
+            scene_from_table(
+                {"title": "t", "vehicle": "hourglass", "water": {"current": current}},
+                folder=tmp_path,
+            )

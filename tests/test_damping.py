@@ -25,7 +25,8 @@ QUADRATIC = 3.0 * np.diag([5.0, 8.0, 11.0, 0.3, 0.4, 0.5]) + 0.2 * LINEAR
 def of(custom, geom='<geom type="box" size=".3 .2 .1" mass="24"/>', pos="0 0 -2", option=""):
     """A free body 'b' with numerics."""
     text = "".join(
-        f'<numeric name="{name}:b" data="{" ".join(map(str, np.ravel(data).tolist()))}"/>' for name, data in custom.items()
+        f'<numeric name="{name}:b" data="{" ".join(map(str, np.ravel(data).tolist()))}"/>'
+        for name, data in custom.items()
     )
     return mujoco.MjModel.from_xml_string(
         f'<mujoco><option timestep="0.001" {option}/><custom>{text}</custom><worldbody><body name="b" pos="{pos}">'
@@ -43,7 +44,10 @@ def moving(model, velocity, turn=0.4):
 
 
 def test_matrices_act_as_fossen_has_them_at_the_origin():
-    model, v = of({"linear_damping": LINEAR, "quadratic_damping": QUADRATIC}), np.array([0.7, -0.3, 0.4, 0.5, -0.8, 0.2])
+    model, v = (
+        of({"linear_damping": LINEAR, "quadratic_damping": QUADRATIC}),
+        np.array([0.7, -0.3, 0.4, 0.5, -0.8, 0.2]),
+    )
     data = moving(model, v)
     found = Buoyancy(model).evaluate(data).by_cause["drag"][1]
     # Fossen 2021, 6.4: D v + D_n(v) v
@@ -51,7 +55,9 @@ def test_matrices_act_as_fossen_has_them_at_the_origin():
     turn = roll(0.4)
     force, torque = turn @ expected[:3], turn @ expected[3:]
     assert found[:3] == pytest.approx(force, rel=1e-12)
-    assert found[3:] == pytest.approx(torque + np.cross(data.xpos[1] - data.xipos[1], force), rel=1e-12)
+    assert found[3:] == pytest.approx(
+        torque + np.cross(data.xpos[1] - data.xipos[1], force), rel=1e-12
+    )
 
 
 def test_a_diagonal_matrix_about_the_centroid_is_six_numbers():
@@ -68,7 +74,10 @@ def test_a_diagonal_matrix_about_the_centroid_is_six_numbers():
 @pytest.mark.parametrize("native", [False, True])
 @pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
 def test_however_strong_matrices_are_they_only_slow_down(native, integrator):
-    model = of({"linear_damping": 1e5 * LINEAR, "quadratic_damping": 1e5 * QUADRATIC}, option=f'integrator="{integrator}"')
+    model = of(
+        {"linear_damping": 1e5 * LINEAR, "quadratic_damping": 1e5 * QUADRATIC},
+        option=f'integrator="{integrator}"',
+    )
     model.opt.timestep = 0.01
     model.opt.gravity[2] = 0.0
     data = moving(model, np.array([0.7, -0.3, 0.4, 0.5, -0.8, 0.2]))
@@ -96,7 +105,11 @@ def test_compiled_and_python_passes_agree(panels):
         buoyancy = Buoyancy(model, water, drag=Drag(panels=panels))
         with buoyancy.installed(native=native):
             mujoco.mj_step(model, data, 200)
-        ends.append(np.concatenate([data.qpos, data.qvel, *(w[1] for w in buoyancy.loads(data).by_cause.values())]))
+        ends.append(
+            np.concatenate(
+                [data.qpos, data.qvel, *(w[1] for w in buoyancy.loads(data).by_cause.values())]
+            )
+        )
     assert np.array_equal(*ends)
 
 
@@ -129,7 +142,9 @@ def test_radiation_takes_from_heave_roll_and_pitch_at_the_surface_alone():
 
 def test_the_decay_of_heave_is_that_of_its_radiation():
     # (m + A) z'' + b z' + rho g S z = 0: ratio of a crest to the next exp(-pi b / (m_all w)) per half period
-    model = of({"radiation_damping": [60.0, 0.0, 0.0], "added_mass": [0, 0, 36.0, 0, 0, 0]}, pos="0 0 0.01")
+    model = of(
+        {"radiation_damping": [60.0, 0.0, 0.0], "added_mass": [0, 0, 36.0, 0, 0, 0]}, pos="0 0 0.01"
+    )
     model.body_ipos[1], model.opt.timestep = [0.0, 0.0, -1e-3], 0.002
     data = mujoco.MjData(model)
     heights = []
@@ -142,7 +157,9 @@ def test_the_decay_of_heave_is_that_of_its_radiation():
     mass, b, c = 24.0 + 18.0, 60.0, 1000.0 * 9.81 * 0.6 * 0.4
     rate, omega = b / (2 * mass), math.sqrt(c / mass - (b / (2 * mass)) ** 2)
     turns = heights[1:-1][(np.diff(heights)[1:] * np.diff(heights)[:-1]) < 0]
-    assert np.abs(turns[1:4] / turns[:3]) == pytest.approx([math.exp(-rate * math.pi / omega)] * 3, rel=0.02)
+    assert np.abs(turns[1:4] / turns[:3]) == pytest.approx(
+        [math.exp(-rate * math.pi / omega)] * 3, rel=0.02
+    )
 
 
 # panels
@@ -152,7 +169,11 @@ def drag_of(geom, velocity, **options):
     """Drag on a body fully in the water at a velocity (6,)."""
     model = of({}, geom)
     data = moving(model, np.asarray(velocity, float), turn=0.0)
-    return Buoyancy(model, Water(density=1025.0), drag=Drag(panels=True, **options)).evaluate(data).by_cause["drag"][1]
+    return (
+        Buoyancy(model, Water(density=1025.0), drag=Drag(panels=True, **options))
+        .evaluate(data)
+        .by_cause["drag"][1]
+    )
 
 
 def test_a_plate_across_the_flow_has_the_coefficient_of_a_flat_face():
@@ -162,13 +183,17 @@ def test_a_plate_across_the_flow_has_the_coefficient_of_a_flat_face():
 
 def test_along_the_flow_a_plate_has_the_skin_friction_of_the_ittc():
     speed, length = 2.0, 2.0
-    found = drag_of(f'<geom type="box" size="{length / 2} .0001 .5" mass="24"/>', [speed, 0, 0, 0, 0, 0])
+    found = drag_of(
+        f'<geom type="box" size="{length / 2} .0001 .5" mass="24"/>', [speed, 0, 0, 0, 0, 0]
+    )
     # ITTC 1957: Re 3.36e6, C_F 0.00366
     coefficient = 0.075 / (math.log10(speed * length / 1.19e-6) - 2.0) ** 2
     assert coefficient == pytest.approx(0.00366, rel=1e-2)
     sides = 2.0 * length * 1.0
     edges = 0.5 * 1025.0 * 1.05 * 0.0002 * 1.0 * speed**2
-    assert found[0] == pytest.approx(-0.5 * 1025.0 * coefficient * sides * speed**2 - edges, rel=5e-3)
+    assert found[0] == pytest.approx(
+        -0.5 * 1025.0 * coefficient * sides * speed**2 - edges, rel=5e-3
+    )
 
 
 def test_a_sphere_has_half_the_coefficient_and_no_torque():
@@ -183,7 +208,9 @@ def test_a_sphere_has_half_the_coefficient_and_no_torque():
 def test_half_in_the_water_a_hull_has_half_of_it():
     model = of({}, pos="0 0 0")
     water, options = Water(), Drag(panels=True)
-    half = Buoyancy(model, water, drag=options).evaluate(moving(model, np.array([0.5, 0, 0, 0, 0, 0]), 0.0))
+    half = Buoyancy(model, water, drag=options).evaluate(
+        moving(model, np.array([0.5, 0, 0, 0, 0, 0]), 0.0)
+    )
     model.body_pos[1] = [0, 0, -2.0]
     data = moving(model, np.array([0.5, 0, 0, 0, 0, 0]), 0.0)
     data.qpos[2] = -2.0
@@ -241,5 +268,7 @@ def test_bad_options_of_drag_are_told():
         Drag(panels=True, viscous=False)
     with pytest.raises(ModelError, match="drag viscosity is 0; panels need one"):
         Drag(panels=True, viscosity=0.0)
-    with pytest.raises(MethodError, match="drag by panels needs the method 'exact', not 'convex_hull'"):
+    with pytest.raises(
+        MethodError, match="drag by panels needs the method 'exact', not 'convex_hull'"
+    ):
         Buoyancy(of({}), drag=Drag(panels=True), method="convex_hull")

@@ -58,16 +58,22 @@ def test_the_command_lines_are_understood(line, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     vehicle = catalog.models()["hourglass"]
     words = shlex.split(line, comments=True)
-    words = [word.replace("path/to/my_vehicle.xml", str(vehicle)) for word in words if word != "--live"]
+    words = [
+        word.replace("path/to/my_vehicle.xml", str(vehicle)) for word in words if word != "--live"
+    ]
     result = CliRunner().invoke(app, [*words, "--duration", "0.05"])
     assert result.exit_code == 0, result.output
 
 
-@pytest.mark.parametrize("line", re.findall(r"\.venv/bin/buoyancy-mj ((?:inspect|ballast) .*)", README))
+@pytest.mark.parametrize(
+    "line", re.findall(r"\.venv/bin/buoyancy-mj ((?:inspect|ballast) .*)", README)
+)
 def test_the_inspections_are_understood(line, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     words = shlex.split(line, comments=True)
-    words = [word.replace("path/to/my_vehicle.xml", str(catalog.models()["sauvc_auv"])) for word in words]
+    words = [
+        word.replace("path/to/my_vehicle.xml", str(catalog.models()["sauvc_auv"])) for word in words
+    ]
     result = CliRunner().invoke(app, words)
     assert result.exit_code == 0, result.output
 
@@ -82,7 +88,9 @@ def test_every_file_and_picture_named_is_there():
 
 def test_every_room_stands_in_the_import_contract_and_on_the_list_of_the_readme():
     contract = (ROOT / "pyproject.toml").read_text()
-    rooms = [path.stem for path in (ROOT / "buoyancy_mj").iterdir() if not path.name.startswith("__")]
+    rooms = [
+        path.stem for path in (ROOT / "buoyancy_mj").iterdir() if not path.name.startswith("__")
+    ]
     assert len(rooms) > 10
     for room in rooms:
         assert f'"buoyancy_mj.{room}' in contract or f"| buoyancy_mj.{room}" in contract, room

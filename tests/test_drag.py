@@ -3,13 +3,15 @@ import numpy as np
 import pytest
 
 from buoyancy_mj import Buoyancy, Drag, ModelError, Water
-from buoyancy_mj.hulls.geoms import displacing_hulls
-from buoyancy_mj.loads.drag import estimated
+from buoyancy_mj.hulls.geoms import find_hulls
+from buoyancy_mj.loads.drag import resolve_damping
 
 
 def damping(geom, drag=None, extra="", density=1000.0):
-    model = mujoco.MjModel.from_xml_string(f"<mujoco><worldbody><body><freejoint/>{geom}{extra}</body></worldbody></mujoco>")
-    return estimated(drag or Drag(), model, displacing_hulls(model), density)
+    model = mujoco.MjModel.from_xml_string(
+        f"<mujoco><worldbody><body><freejoint/>{geom}{extra}</body></worldbody></mujoco>"
+    )
+    return resolve_damping(drag or Drag(), model, find_hulls(model), density)
 
 
 def coefficients(geom, areas):
@@ -18,11 +20,15 @@ def coefficients(geom, areas):
 
 
 def test_a_cube_has_the_coefficient_that_hoerner_measured():
-    assert coefficients('<geom type="box" size=".2 .2 .2"/>', [0.16] * 3) == pytest.approx([1.05] * 3, rel=1e-2)
+    assert coefficients('<geom type="box" size=".2 .2 .2"/>', [0.16] * 3) == pytest.approx(
+        [1.05] * 3, rel=1e-2
+    )
 
 
 def test_a_sphere_is_near_the_coefficient_that_hoerner_measured():
-    assert coefficients('<geom type="sphere" size=".2"/>', [np.pi * 0.04] * 3) == pytest.approx([0.47] * 3, rel=0.15)
+    assert coefficients('<geom type="sphere" size=".2"/>', [np.pi * 0.04] * 3) == pytest.approx(
+        [0.47] * 3, rel=0.15
+    )
 
 
 def test_a_short_cylinder_across_the_flow_is_near_whites_table():
@@ -39,7 +45,9 @@ def test_drag_grows_with_the_density_of_the_water():
 def test_a_hidden_part_adds_nothing_to_the_silhouette():
     geom = '<geom type="box" size=".5 .2 .2"/>'
     behind = '<geom type="box" size=".1 .1 .1" pos=".7 0 0"/>'
-    assert damping(geom, extra=behind).quadratic[0, 0] == pytest.approx(damping(geom).quadratic[0, 0], rel=0.02)
+    assert damping(geom, extra=behind).quadratic[0, 0] == pytest.approx(
+        damping(geom).quadratic[0, 0], rel=0.02
+    )
 
 
 def test_turning_a_plate_meets_the_flow_at_each_strips_own_speed():
@@ -53,7 +61,9 @@ def test_linear_and_quadratic_parts_are_equal_at_the_stated_froude_number():
     d = damping('<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.07))
     speed = 0.07 * np.sqrt(9.81 * 1.0)
     assert d.linear[0, :3] == pytest.approx(d.quadratic[0, :3] * speed)
-    assert damping('<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.0)).linear == pytest.approx(0.0)
+    assert damping(
+        '<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.0)
+    ).linear == pytest.approx(0.0)
 
 
 BOX = """<mujoco><worldbody><body pos="0 0 -2"><freejoint/>
@@ -88,17 +98,23 @@ def test_a_body_at_rest_in_a_current_is_pushed_along():
     )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    still, moving = (Buoyancy(model, Water(current=c)).evaluate(data).by_cause["drag"][1] for c in ((0, 0, 0), (0, 0.5, 0)))
+    still, moving = (
+        Buoyancy(model, Water(current=c)).evaluate(data).by_cause["drag"][1]
+        for c in ((0, 0, 0), (0, 0.5, 0))
+    )
     assert still == pytest.approx(0.0)
     assert moving[1] > 0.0
     assert moving[[0, 2]] == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(
-    ("field", "value"), [("coefficient", -1.0), ("linear_froude", float("nan")), ("coefficient", "big")]
+    ("field", "value"),
+    [("coefficient", -1.0), ("linear_froude", float("nan")), ("coefficient", "big")],
 )
 def test_impossible_drag_is_told(field, value):
-    with pytest.raises(ModelError, match=f"drag {field} is .*; it must be a finite number of at least 0"):
+    with pytest.raises(
+        ModelError, match=f"drag {field} is .*; it must be a finite number of at least 0"
+    ):
         Drag(**{field: value})
 
 
@@ -120,7 +136,13 @@ def rov():
     ("density", "push", "axis", "speed"),
     # P18: von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898: sinks with 0.981 N in fresh water, rises with 2.305 N in
     # sea water; surge with 10, 40, 100 N
-    [(1000, 0, 2, -0.0259), (1025, 0, 2, 0.0534), (1000, 10, 0, 0.222), (1000, 40, 0, 0.486), (1000, 100, 0, 0.795)],
+    [
+        (1000, 0, 2, -0.0259),
+        (1025, 0, 2, 0.0534),
+        (1000, 10, 0, 0.222),
+        (1000, 40, 0, 0.486),
+        (1000, 100, 0, 0.795),
+    ],
 )
 def test_the_bluerov2_heavy_reaches_its_terminal_speeds(density, push, axis, speed):
     model = rov()
@@ -136,7 +158,7 @@ def test_the_bluerov2_heavy_reaches_its_terminal_speeds(density, push, axis, spe
 
 
 def test_what_is_stated_replaces_the_estimate_of_that_body():
-    damping = estimated(Drag(), rov(), displacing_hulls(rov()), 1000.0)
+    damping = resolve_damping(Drag(), rov(), find_hulls(rov()), 1000.0)
     assert damping.linear[0].tolist() == [13.7, 0, 33, 0, 0.8, 0]
     assert damping.quadratic[0].tolist() == [141, 217, 190, 1.19, 0.47, 1.5]
 
@@ -144,8 +166,16 @@ def test_what_is_stated_replaces_the_estimate_of_that_body():
 @pytest.mark.parametrize(
     ("before", "after", "message"),
     [
-        ('data="13.7 0 33 0 0.8 0"', 'data="13.7 0 33"', "the linear damping of body 'rov' is .* it must be 6 numbers"),
-        ('data="141 ', 'data="-141 ', "the quadratic damping of body 'rov' is .*X_uu have the other sign"),
+        (
+            'data="13.7 0 33 0 0.8 0"',
+            'data="13.7 0 33"',
+            "the linear damping of body 'rov' is .* it must be 6 numbers",
+        ),
+        (
+            'data="141 ',
+            'data="-141 ',
+            "the quadratic damping of body 'rov' is .*X_uu have the other sign",
+        ),
         (
             "linear_damping:rov",
             "linear_damping:auv",

@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj.viz.geoms import drawn_geoms
+from buoyancy_mj.viz.geoms import find_visible_geoms
 
 MODEL = """
 <mujoco>
@@ -24,7 +24,7 @@ MODEL = """
 
 def drawn(text=MODEL):
     model = mujoco.MjModel.from_xml_string(text)
-    return model, {model.geom(shape.geom).name: shape for shape in drawn_geoms(model)}
+    return model, {model.geom(shape.geom).name: shape for shape in find_visible_geoms(model)}
 
 
 def test_what_the_viewer_shows_is_drawn_and_nothing_else():
@@ -54,7 +54,9 @@ def test_every_geom_stands_where_the_engine_has_it():
     mujoco.mj_kinematics(model, data)
     for shape in shapes.values():
         turn = data.xmat[shape.body].reshape(3, 3)
-        assert turn @ shape.position + data.xpos[shape.body] == pytest.approx(data.geom_xpos[shape.geom])
+        assert turn @ shape.position + data.xpos[shape.body] == pytest.approx(
+            data.geom_xpos[shape.geom]
+        )
         assert turn @ shape.rotation == pytest.approx(data.geom_xmat[shape.geom].reshape(3, 3))
     assert not shapes["pier"].moves
     assert shapes["mast"].moves
@@ -63,7 +65,10 @@ def test_every_geom_stands_where_the_engine_has_it():
 def test_moving_geoms_are_fine_enough_to_show_what_is_wet():
     shape = drawn()[1]["hull"]
     a, b, c = shape.vertices[shape.faces.T]
-    assert max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c)) <= 1.4 * 2.0 / 12.0
+    assert (
+        max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c))
+        <= 1.4 * 2.0 / 12.0
+    )
 
 
 def test_normals_point_outward():

@@ -6,7 +6,7 @@ import pytest
 from scipy.optimize import brentq
 
 from buoyancy_mj import Buoyancy, Drag, LevelOscillation, Simulation, Water, read_scene, submerge
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.scenes import catalog
 from tests import naive
 
@@ -75,12 +75,15 @@ def test_a_sphere_bobs_with_its_exact_nonlinear_period(drop):
     low = brentq(lambda z: potential(z) - potential(drop), -0.399, -1e-6)
     model = model_of(f'<geom type="sphere" size="{radius}" mass="{mass}"/>')
     z = run(model, 12.0, lambda d: d.qpos[2], start=(0, 0, drop, 1, 0, 0, 0))
-    assert measured_period(z, 0.002) == pytest.approx(naive.period(potential, mass, low, drop), rel=1e-3)
+    assert measured_period(z, 0.002) == pytest.approx(
+        naive.period(potential, mass, low, drop), rel=1e-3
+    )
     assert z.min() == pytest.approx(low, abs=1e-3)
 
 
 @pytest.mark.parametrize(
-    ("angle", "factor"), [(10, 1.001907), (30, 1.017409), (60, 1.073182), (90, 1.180341), (120, 1.372881)]
+    ("angle", "factor"),
+    [(10, 1.001907), (30, 1.017409), (60, 1.073182), (90, 1.180341), (120, 1.372881)],
 )
 def test_a_neutral_body_under_water_swings_as_a_pendulum(angle, factor):
     # T = 2 pi sqrt(I / (B h)), times the elliptic factor for the angle
@@ -88,7 +91,7 @@ def test_a_neutral_body_under_water_swings_as_a_pendulum(angle, factor):
         '<geom type="ellipsoid" size=".4 .2 .2" mass="0"/>',
         extra='<inertial pos="0 0 -.05" mass="67.02064" diaginertia="1.2 4 4"/>',
     )
-    volume = displacing_hulls(model)[0].mesh.volume
+    volume = find_hulls(model)[0].mesh.volume
     model.body_mass[1] = 1000.0 * volume
     half = np.radians(angle) / 2.0
     start = (0, 0, -3, np.cos(half), np.sin(half), 0, 0)
@@ -102,7 +105,11 @@ def test_a_neutral_body_under_water_swings_as_a_pendulum(angle, factor):
 
 
 @pytest.mark.parametrize(
-    "geom", ['<geom type="box" size=".3 .2 .15" density="450"/>', '<geom type="capsule" size=".15 .3" density="450"/>']
+    "geom",
+    [
+        '<geom type="box" size=".3 .2 .15" density="450"/>',
+        '<geom type="capsule" size=".15 .3" density="450"/>',
+    ],
 )
 def test_an_undamped_body_keeps_its_energy_for_twenty_cycles(geom):
     model = model_of(geom)
@@ -119,7 +126,9 @@ def test_an_undamped_body_keeps_its_energy_for_twenty_cycles(geom):
                 now.qpos[:], now.qvel[:] = data.qpos, data.qvel
                 mujoco.mj_forward(model, now)
                 wet = buoyancy.evaluate(now)
-                lifted = 0.0 if wet.total.volume == 0.0 else -wet.total.centroid[2] * wet.total.volume
+                lifted = (
+                    0.0 if wet.total.volume == 0.0 else -wet.total.centroid[2] * wet.total.volume
+                )
                 energies.append(now.energy.sum() + 1000.0 * G * lifted)
             heights.append(data.qpos[2])
     cycles = 24.0 / measured_period(np.array(heights), 0.002)
@@ -131,7 +140,7 @@ def test_an_undamped_body_keeps_its_energy_for_twenty_cycles(geom):
 
 
 def _rest_energy(model, height):
-    mesh = displacing_hulls(model)[0].mesh
+    mesh = find_hulls(model)[0].mesh
     wet = submerge(mesh, (0, 0, height))
     lifted = -wet.centroid[2] * wet.volume if wet.volume else 0.0
     return model.body_mass[1] * G * height + 1000.0 * G * lifted
@@ -141,14 +150,24 @@ def _rest_energy(model, height):
 
 
 def test_a_box_settles_at_the_draft_of_its_mass():
-    model = model_of('<geom type="box" size=".3 .2 .1" mass="9"/>', integrator="implicitfast", timestep=0.005)
-    z = run(model, 60.0, lambda d: d.qpos[2], drag=Drag(linear_froude=0.2), start=(0, 0, 0.3, 1, 0, 0, 0))
+    model = model_of(
+        '<geom type="box" size=".3 .2 .1" mass="9"/>', integrator="implicitfast", timestep=0.005
+    )
+    z = run(
+        model,
+        60.0,
+        lambda d: d.qpos[2],
+        drag=Drag(linear_froude=0.2),
+        start=(0, 0, 0.3, 1, 0, 0, 0),
+    )
     assert 0.1 - z[-1] == pytest.approx(9.0 / (1000.0 * 0.24), abs=1e-5)
     assert np.ptp(z[-1000:]) < 1e-5
 
 
 def test_the_default_drag_settles_a_drop_within_a_minute():
-    model = model_of('<geom type="box" size=".3 .2 .1" mass="9"/>', integrator="implicitfast", timestep=0.01)
+    model = model_of(
+        '<geom type="box" size=".3 .2 .1" mass="9"/>', integrator="implicitfast", timestep=0.01
+    )
     z = run(model, 60.0, lambda d: d.qpos[2], drag=Drag(), start=(0, 0, 0.3, 1, 0, 0, 0))
     assert np.ptp(z[-500:]) < 0.002
 
@@ -200,7 +219,9 @@ def test_the_hourglass_comes_to_rest_upright():
 
 
 def test_a_hull_released_at_thirty_degrees_rights_itself():
-    model = model_of('<geom type="box" size=".5 .3 .1" density="400"/>', integrator="implicitfast", timestep=0.01)
+    model = model_of(
+        '<geom type="box" size=".5 .3 .1" density="400"/>', integrator="implicitfast", timestep=0.01
+    )
     start = (0, 0, 0, np.cos(np.pi / 12), np.sin(np.pi / 12), 0, 0)
     upright = run(model, 60.0, lambda d: d.xmat[1][8], drag=Drag(), start=start)
     assert upright[0] == pytest.approx(np.cos(np.pi / 6), abs=1e-3)
@@ -209,7 +230,11 @@ def test_a_hull_released_at_thirty_degrees_rights_itself():
 
 def test_the_cuboid_of_openfoam_tips_over():
     # GM = -0.095 m upright
-    model = model_of('<geom type="box" size=".1 .15 .25" density="500"/>', integrator="implicitfast", timestep=0.005)
+    model = model_of(
+        '<geom type="box" size=".1 .15 .25" density="500"/>',
+        integrator="implicitfast",
+        timestep=0.005,
+    )
     upright = run(model, 20.0, lambda d: d.xmat[1][8], drag=Drag(), start=(0, 0, 0, 1, 0.001, 0, 0))
     assert abs(upright[-1]) < 0.1
 
@@ -218,14 +243,18 @@ def test_the_cuboid_of_openfoam_tips_over():
 
 
 def test_drag_is_relative_to_the_current():
-    model = model_of('<geom type="box" size=".3 .2 .1" mass="12"/>', integrator="implicitfast", timestep=0.01)
+    model = model_of(
+        '<geom type="box" size=".3 .2 .1" mass="12"/>', integrator="implicitfast", timestep=0.01
+    )
     speed = run(model, 60.0, lambda d: d.qvel[0], water=Water(current=(0.4, 0.0, 0.0)), drag=Drag())
     assert speed[-1] == pytest.approx(0.4, abs=1e-3)
 
 
 @pytest.mark.parametrize("timestep", [0.01, 0.05])
 def test_drag_never_turns_a_light_body_round(timestep):
-    model = model_of('<geom type="box" size=".2 .2 .005" mass="0.02"/>', integrator="Euler", timestep=timestep)
+    model = model_of(
+        '<geom type="box" size=".2 .2 .005" mass="0.02"/>', integrator="Euler", timestep=timestep
+    )
     data = mujoco.MjData(model)
     model.opt.gravity[:] = 0.0
     data.qpos[2], data.qvel[:] = -1.0, [0.5, 0.3, 8.0, 3.0, -9.0, 1.0]
@@ -239,16 +268,28 @@ def test_drag_never_turns_a_light_body_round(timestep):
 
 
 def test_waves_carry_the_vehicle_with_the_moving_level_of_the_source_paper():
-    model = model_of('<geom type="box" size=".3 .2 .1" mass="12"/>', integrator="implicitfast", timestep=0.01)
+    model = model_of(
+        '<geom type="box" size=".3 .2 .1" mass="12"/>', integrator="implicitfast", timestep=0.01
+    )
     # 20 s against a bobbing period of 0.6 s: it follows the level
-    z = run(model, 60.0, lambda d: d.qpos[2], water=Water(waves=LevelOscillation(0.3, 0.05)), drag=Drag())
+    z = run(
+        model,
+        60.0,
+        lambda d: d.qpos[2],
+        water=Water(waves=LevelOscillation(0.3, 0.05)),
+        drag=Drag(),
+    )
     assert np.ptp(z[-2500:]) == pytest.approx(0.6, rel=0.02)
 
 
 def test_a_simulation_is_the_same_with_and_without_its_frames():
     ends = []
     for rate in (5, 100):
-        simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_waves"], [f"record_rate={rate}", "duration=1"]))
+        simulation = Simulation(
+            read_scene(
+                catalog.scenes()["hourglass_drop_waves"], [f"record_rate={rate}", "duration=1"]
+            )
+        )
         list(simulation.frames())
         ends.append(simulation.data.qpos.copy())
     assert np.array_equal(*ends)
@@ -256,7 +297,9 @@ def test_a_simulation_is_the_same_with_and_without_its_frames():
 
 def test_in_a_long_sea_the_auv_rides_the_surface():
     frames = list(Simulation(read_scene(catalog.scenes()["auv_sea_state_2"])).frames())
-    late = np.array([(frame.centre_of_mass[2], frame.elevation) for frame in frames if frame.time > 5.0])
+    late = np.array(
+        [(frame.centre_of_mass[2], frame.elevation) for frame in frames if frame.time > 5.0]
+    )
     # waves of 19 m carry a hull of half a metre; what is shorter and its own heave are a little more
     assert np.corrcoef(late.T)[0, 1] > 0.95
     assert np.std(late[:, 0]) == pytest.approx(np.std(late[:, 1]), rel=0.05)

@@ -9,7 +9,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import Buoyancy, EquilibriumError, ModelError, Scene, SceneError, Simulation, Start, Water, equilibrium
+from buoyancy_mj import (
+    Buoyancy,
+    EquilibriumError,
+    ModelError,
+    Scene,
+    SceneError,
+    Simulation,
+    Start,
+    Water,
+    equilibrium,
+)
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes import catalog
 from tests import naive, vessels
@@ -28,14 +38,20 @@ def test_a_box_rights_itself_from_any_heel_short_of_its_vanishing_stability():
         found = equilibrium(vessels.box(), start=tilted(math.radians(heel), 0.2))
         assert found.stable
         assert found.hydrostatics.draft == pytest.approx(0.3, abs=1e-9)
-        assert (found.hydrostatics.heel, found.hydrostatics.trim) == pytest.approx((0.0, 0.0), abs=1e-9)
+        assert (found.hydrostatics.heel, found.hydrostatics.trim) == pytest.approx(
+            (0.0, 0.0), abs=1e-9
+        )
     # heave, roll and pitch of the box, squared: 2 pi / 1.0988 s, 2 pi / 1.8893 s
-    assert 2 * math.pi / np.sqrt(found.eigenvalues) == pytest.approx([1.8893, 1.2334, 1.0988], abs=1e-4)
+    assert 2 * math.pi / np.sqrt(found.eigenvalues) == pytest.approx(
+        [1.8893, 1.2334, 1.0988], abs=1e-4
+    )
 
 
 def test_a_box_floats_on_either_face_and_nowhere_else():
     found = equilibrium(vessels.box(), all=True)
-    assert sorted(abs(math.degrees(one.hydrostatics.heel)) for one in found) == pytest.approx([0.0, 180.0], abs=1e-6)
+    assert sorted(abs(math.degrees(one.hydrostatics.heel)) for one in found) == pytest.approx(
+        [0.0, 180.0], abs=1e-6
+    )
     assert [one.energy for one in found] == pytest.approx([600 * 9.81 * 0.15] * 2, rel=1e-9)
 
 
@@ -43,7 +59,14 @@ def test_a_box_floats_on_either_face_and_nowhere_else():
     ("ratio", "angle"),
     # a long square log: flat for c < (3 - sqrt 3) / 6 = 0.2113, on edge from 9/32 to 23/32, between them at an angle;
     # at a quarter tan = 1/2 (Erdos, Schibler, Herndon 1992, Am. J. Phys. 60, 335)
-    [(0.2, 0.0), (0.25, math.degrees(math.atan(0.5))), (0.29, 45.0), (0.5, 45.0), (0.75, 26.565), (0.8, 0.0)],
+    [
+        (0.2, 0.0),
+        (0.25, math.degrees(math.atan(0.5))),
+        (0.29, 45.0),
+        (0.5, 45.0),
+        (0.75, 26.565),
+        (0.8, 0.0),
+    ],
 )
 def test_a_square_log_floats_flat_slanted_or_on_edge(ratio, angle):
     model = vessels.box((3.0, 0.5, 0.5), ratio * 6000.0)
@@ -54,7 +77,12 @@ def test_a_square_log_floats_flat_slanted_or_on_edge(ratio, angle):
 def test_a_cube_of_half_density_floats_on_any_of_its_corners():
     found = equilibrium(vessels.box((0.5, 0.5, 0.5), 500.0), all=True)
     assert len(found) == 8
-    downs = np.array([np.abs(Rotation.from_quat(one.qpos[3:], scalar_first=True).as_matrix()[2]) for one in found])
+    downs = np.array(
+        [
+            np.abs(Rotation.from_quat(one.qpos[3:], scalar_first=True).as_matrix()[2])
+            for one in found
+        ]
+    )
     assert downs == pytest.approx(np.full((8, 3), 1 / math.sqrt(3)), abs=1e-6)
 
 
@@ -64,7 +92,9 @@ def test_the_tall_cuboid_of_openfoam_stands_only_on_paper():
     upright = equilibrium(model, stable=False)
     assert upright.stability == "unstable"
     assert upright.eigenvalues[0] < 0.0
-    assert (upright.hydrostatics.heel, upright.hydrostatics.draft) == pytest.approx((0.0, 0.25), abs=1e-9)
+    assert (upright.hydrostatics.heel, upright.hydrostatics.draft) == pytest.approx(
+        (0.0, 0.25), abs=1e-9
+    )
     fallen = equilibrium(model)
     assert fallen.stable
     assert abs(math.degrees(fallen.hydrostatics.heel)) == pytest.approx(90.0, abs=1e-6)
@@ -73,7 +103,9 @@ def test_the_tall_cuboid_of_openfoam_stands_only_on_paper():
 
 @pytest.mark.parametrize("shape", ["cylinder", "capsule"])
 def test_a_log_rolls_without_resistance_and_counts_once(shape):
-    found = equilibrium(vessels.of_geoms(f'<geom type="{shape}" size=".2 1" mass="100"/>'), all=True)
+    found = equilibrium(
+        vessels.of_geoms(f'<geom type="{shape}" size=".2 1" mass="100"/>'), all=True
+    )
     assert len(found) == 1
     assert abs(Rotation.from_quat(found[0].qpos[3:], scalar_first=True).apply([0, 0, 1])[2]) < 1e-6
 
@@ -99,7 +131,9 @@ def test_an_hourglass_that_weighs_half_hangs_by_its_neck():
 def test_at_rest_forces_vanish_and_every_small_tilt_comes_back(seed, ratio):
     rng = np.random.default_rng(seed)
     mesh = vessels.dented(seed)
-    model = vessels.of_mesh(mesh, ratio * 1000.0 * mesh.volume, mesh.centroid + rng.uniform(-0.2, 0.2, 3))
+    model = vessels.of_mesh(
+        mesh, ratio * 1000.0 * mesh.volume, mesh.centroid + rng.uniform(-0.2, 0.2, 3)
+    )
     found = equilibrium(model, start=tilted(*rng.uniform(-3, 3, 3)))
     assert found.stability != "unstable"
     # by the engine's own callback
@@ -111,7 +145,9 @@ def test_at_rest_forces_vanish_and_every_small_tilt_comes_back(seed, ratio):
     assert total.force[2] == pytest.approx(weight, rel=1e-9)
     assert total.centroid[:2] == pytest.approx(data.subtree_com[1, :2], abs=1e-8)
     # and from a little beside it the way leads back
-    push = Rotation.from_rotvec([*rng.uniform(-0.01, 0.01, 2), 0.0]) * Rotation.from_quat(found.qpos[3:], scalar_first=True)
+    push = Rotation.from_rotvec([*rng.uniform(-0.01, 0.01, 2), 0.0]) * Rotation.from_quat(
+        found.qpos[3:], scalar_first=True
+    )
     again = equilibrium(model, start=[0, 0, 0, *push.as_quat(scalar_first=True)])
     assert again.energy == pytest.approx(found.energy, abs=1e-9 * weight)
 
@@ -138,12 +174,15 @@ def test_joints_are_held():
     # the boom leans to port, y > 0, and takes the raft down there: tan(heel) is about m y / (M GM)
     assert aside.qpos[7] == -0.8
     arm = 10 * 0.5 * math.sin(0.8) / 210
-    assert math.tan(aside.hydrostatics.heel) == pytest.approx(-arm / upright.hydrostatics.GMt, rel=0.05)
+    assert math.tan(aside.hydrostatics.heel) == pytest.approx(
+        -arm / upright.hydrostatics.GMt, rel=0.05
+    )
 
 
 def test_what_is_too_heavy_sinks_with_the_missing_kilograms():
     with pytest.raises(
-        EquilibriumError, match=r"'hull' sinks: it weighs 1300 kg and displaces 1200 kg .* 100 kg too little"
+        EquilibriumError,
+        match=r"'hull' sinks: it weighs 1300 kg and displaces 1200 kg .* 100 kg too little",
     ):
         equilibrium(vessels.box(mass=1300.0))
 
@@ -155,13 +194,17 @@ def test_what_weighs_just_what_it_displaces_hovers_with_its_buoyancy_on_top():
     assert found.stability == "indifferent"
     assert pytest.approx(math.hypot(0.1, 0.02), rel=1e-12) == found.hydrostatics.BG
     assert found.qpos[2] == pytest.approx(-7.0, abs=0.2)
-    assert math.degrees(found.hydrostatics.trim) == pytest.approx(math.degrees(math.atan2(0.1, 0.02)), rel=1e-9)
+    assert math.degrees(found.hydrostatics.trim) == pytest.approx(
+        math.degrees(math.atan2(0.1, 0.02)), rel=1e-9
+    )
     assert len(equilibrium(model, all=True)) == 1
 
 
 def test_a_hair_of_reserve_is_enough_to_float():
     mesh = vessels.dented(1)
-    model = vessels.of_mesh(mesh, 1000.0 * mesh.volume * (1.0 - 1e-5), mesh.centroid + [0, 0, -0.05])
+    model = vessels.of_mesh(
+        mesh, 1000.0 * mesh.volume * (1.0 - 1e-5), mesh.centroid + [0, 0, -0.05]
+    )
     found = equilibrium(model, start=tilted(1.0))
     assert found.stable
     assert 0.0 < found.hydrostatics.waterplane_area < 1e-2
@@ -173,7 +216,10 @@ def test_what_hangs_on_joints_is_not_free_to_float():
         '<mujoco><worldbody><body name="buoy"><joint type="slide" axis="0 0 1"/><geom type="sphere" size=".5" mass="100"/>'
         "</body></worldbody></mujoco>"
     )
-    with pytest.raises(ModelError, match="body 'buoy' hangs on joints and is not free to float; give it a <freejoint/>"):
+    with pytest.raises(
+        ModelError,
+        match="body 'buoy' hangs on joints and is not free to float; give it a <freejoint/>",
+    ):
         equilibrium(model)
 
 
@@ -214,7 +260,8 @@ def odd(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["hourglass", "sauvc_auv", "dented", "catamaran with a load to one side", "cone off its frame"]
+    "name",
+    ["hourglass", "sauvc_auv", "dented", "catamaran with a load to one side", "cone off its frame"],
 )
 def test_it_is_where_the_simulated_vehicle_comes_to_rest(name):
     model = odd(name)
@@ -222,7 +269,9 @@ def test_it_is_where_the_simulated_vehicle_comes_to_rest(name):
     found = equilibrium(model, start=start)
     end = settled(model, start)
     assert found.qpos[2] == pytest.approx(end[2], abs=1e-4)
-    ours, theirs = (Rotation.from_quat(q[3:7], scalar_first=True).as_matrix()[2] for q in (found.qpos, end))
+    ours, theirs = (
+        Rotation.from_quat(q[3:7], scalar_first=True).as_matrix()[2] for q in (found.qpos, end)
+    )
     assert math.degrees(math.atan2(np.linalg.norm(np.cross(ours, theirs)), ours @ theirs)) < 0.05
 
 
@@ -237,13 +286,17 @@ def test_a_scene_may_start_there():
 
 
 def test_a_scene_that_starts_at_something_else_is_told():
-    with pytest.raises(SceneError, match=r"start.at is 'anchor'; possible: equilibrium, or leave it out"):
+    with pytest.raises(
+        SceneError, match=r"start.at is 'anchor'; possible: equilibrium, or leave it out"
+    ):
         Start(at="anchor")
 
 
 def test_a_scene_that_cannot_float_is_told():
     with pytest.raises(EquilibriumError, match="sinks"):
-        Simulation(Scene(title="heavy", vehicle="sauvc_auv", mass=40.0, start=Start(at="equilibrium")))
+        Simulation(
+            Scene(title="heavy", vehicle="sauvc_auv", mass=40.0, start=Start(at="equilibrium"))
+        )
 
 
 def test_the_wetted_part_is_that_of_its_own_mesh():

@@ -7,7 +7,7 @@ import shapely
 import shapely.affinity
 
 from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Water
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.meshes import shapes
 from tests.naive import two_cones
 
@@ -43,11 +43,15 @@ def names(hulls):
 
 
 def test_each_body_displaces_by_its_collision_geoms_or_else_its_visual_ones():
-    assert names(displacing_hulls(vehicle())) == ["hull_collision", "mast_visual", "arm/ellipsoid 5"]
+    assert names(find_hulls(vehicle())) == ["hull_collision", "mast_visual", "arm/ellipsoid 5"]
 
 
 def test_what_cannot_move_displaces_nothing():
-    assert names(displacing_hulls(vehicle(), "*")) == ["hull_collision + hull_visual", "mast_visual", "arm/ellipsoid 5"]
+    assert names(find_hulls(vehicle(), "*")) == [
+        "hull_collision + hull_visual",
+        "mast_visual",
+        "arm/ellipsoid 5",
+    ]
 
 
 @pytest.mark.parametrize(
@@ -62,35 +66,38 @@ def test_what_cannot_move_displaces_nothing():
     ],
 )
 def test_patterns_and_groups_choose(patterns, chosen):
-    assert names(displacing_hulls(vehicle(), patterns)) == chosen
+    assert names(find_hulls(vehicle(), patterns)) == chosen
 
 
 def test_the_vehicle_itself_may_choose_and_the_user_overrules_it():
     model = vehicle('<text name="buoyancy_geoms" data="hull_visual mast*"/>')
-    assert names(displacing_hulls(model)) == ["hull_visual", "mast_visual"]
-    assert names(displacing_hulls(model, "hull_collision")) == ["hull_collision"]
+    assert names(find_hulls(model)) == ["hull_visual", "mast_visual"]
+    assert names(find_hulls(model, "hull_collision")) == ["hull_collision"]
 
 
 def test_a_pattern_that_matches_nothing_lists_what_there_is():
     with pytest.raises(
-        ModelError, match=r"no moving geom matches 'hull_vizual'; did you mean 'hull_visual'\? possible: arm/"
+        ModelError,
+        match=r"no moving geom matches 'hull_vizual'; did you mean 'hull_visual'\? possible: arm/",
     ):
-        displacing_hulls(vehicle(), "hull_vizual")
+        find_hulls(vehicle(), "hull_vizual")
     with pytest.raises(ModelError, match="no moving geom matches 'floor'"):
-        displacing_hulls(vehicle(), "floor")
+        find_hulls(vehicle(), "floor")
     with pytest.raises(ModelError, match="an empty choice of geoms displaces nothing"):
-        displacing_hulls(vehicle(), [])
+        find_hulls(vehicle(), [])
 
 
 def test_a_model_without_a_displacing_geom_is_refused():
-    still = mujoco.MjModel.from_xml_string("<mujoco><worldbody><geom size='1'/></worldbody></mujoco>")
+    still = mujoco.MjModel.from_xml_string(
+        "<mujoco><worldbody><geom size='1'/></worldbody></mujoco>"
+    )
     with pytest.raises(ModelError, match="no geom of this model displaces water"):
         Buoyancy(still)
 
 
 def test_a_body_without_a_joint_is_part_of_its_parent():
     model = vehicle()
-    hulls = {hull.name: hull for hull in displacing_hulls(model)}
+    hulls = {hull.name: hull for hull in find_hulls(model)}
     assert hulls["mast_visual"].body == model.body("hull").id
     assert hulls["mast_visual"].position == pytest.approx([0.0, 0.0, 0.6])
     assert hulls["arm/ellipsoid 5"].body == model.body("arm").id
@@ -105,21 +112,25 @@ PAIR = """
 
 
 def test_geoms_of_one_body_that_overlap_displace_as_one():
-    (hull,) = displacing_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.3, turn=0)))
+    (hull,) = find_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.3, turn=0)))
     assert hull.name == "left + right"
     assert hull.geoms == (0, 1)
     assert hull.mesh.volume == pytest.approx(0.032 - 0.004, rel=1e-12)
     assert hull.mesh_in_body.centroid == pytest.approx([0.15, 0.0, 0.0], abs=1e-12)
     # two boxes less the two ends that are inside
-    assert hull.mesh.area == pytest.approx(2 * (2 * 0.04 + 4 * 0.08 * 1.0) - 2 * 0.04 - 4 * 0.1 * 0.2, rel=1e-12)
+    assert hull.mesh.area == pytest.approx(
+        2 * (2 * 0.04 + 4 * 0.08 * 1.0) - 2 * 0.04 - 4 * 0.1 * 0.2, rel=1e-12
+    )
 
 
 @pytest.mark.parametrize(("x", "turn"), [(0.3, 30), (0.0, 90), (0.25, 45), (0.39, 10)])
 def test_the_union_is_by_inclusion_and_exclusion(x, turn):
     model = mujoco.MjModel.from_xml_string(PAIR.format(x=x, turn=turn))
-    (hull,) = displacing_hulls(model)
+    (hull,) = find_hulls(model)
     outlines = [
-        shapely.affinity.translate(shapely.affinity.rotate(shapely.box(-0.2, -0.1, 0.2, 0.1), angle), shift)
+        shapely.affinity.translate(
+            shapely.affinity.rotate(shapely.box(-0.2, -0.1, 0.2, 0.1), angle), shift
+        )
         for angle, shift in ((0, 0), (turn, x))
     ]
     common = 0.2 * outlines[0].intersection(outlines[1]).area
@@ -130,7 +141,7 @@ def test_a_ball_in_a_box_that_pokes_out_counts_by_its_cap():
     # a polyhedral ball of the true volume: the cap of height 0.05 is off by its own coarseness alone
     model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody><body><freejoint/>
       <geom type="box" size=".3 .3 .1"/><geom type="sphere" size=".1" pos="0 0 .05"/></body></worldbody></mujoco>""")
-    (hull,) = displacing_hulls(model)
+    (hull,) = find_hulls(model)
     cap = np.pi * 0.05**2 * (3 * 0.1 - 0.05) / 3
     assert hull.mesh.volume == pytest.approx(0.072 + cap, rel=2e-5)
 
@@ -148,10 +159,15 @@ def test_flooded_geoms_displace_in_part_and_what_is_solid_in_them_wholly():
     assert dict(zip(loads.names, loads.hull.volume.tolist(), strict=True)) == pytest.approx(
         {"duct": 0.25 * 0.032, "pod": 0.008, "mast": 0.008}
     )
-    assert Buoyancy(model, water, fill="duct=1").evaluate(data).total.volume == pytest.approx(0.04 + 0.008)
+    assert Buoyancy(model, water, fill="duct=1").evaluate(data).total.volume == pytest.approx(
+        0.04 + 0.008
+    )
     # cut by a wave, each force is the same part
     wave = Water(waves=RegularWave(amplitude=0.05, wavelength=1.0), level=0.02)
-    hollow, solid = (Buoyancy(model, wave, geoms="duct", fill=f"duct={part}").evaluate(data).hull for part in (0.25, 1))
+    hollow, solid = (
+        Buoyancy(model, wave, geoms="duct", fill=f"duct={part}").evaluate(data).hull
+        for part in (0.25, 1)
+    )
     assert hollow.volume == pytest.approx(0.25 * solid.volume, rel=1e-12)
     assert hollow.centroid == pytest.approx(solid.centroid, abs=1e-12)
 
@@ -161,7 +177,10 @@ def test_each_method_knows_parts(method):
     model = mujoco.MjModel.from_xml_string(PAIR.format(x=0.5, turn=0))
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    whole, part = (Buoyancy(model, Water(level=1.0), fill=f"{fill}", method=method).evaluate(data).hull for fill in (1, 0.3))
+    whole, part = (
+        Buoyancy(model, Water(level=1.0), fill=f"{fill}", method=method).evaluate(data).hull
+        for fill in (1, 0.3)
+    )
     assert part.volume == pytest.approx(0.3 * whole.volume)
     assert part.centroid == pytest.approx(whole.centroid)
 
@@ -169,7 +188,7 @@ def test_each_method_knows_parts(method):
 def test_a_geom_may_displace_as_its_convex_hull():
     box = shapes.box((1.0, 0.5, 0.3))
     tub = mesh_model(box.vertices, box.faces[box.area_vectors[:, 2] <= 0.0])
-    (hull,) = displacing_hulls(tub, hull="tub=convex")
+    (hull,) = find_hulls(tub, hull="tub=convex")
     assert hull.mesh.volume == pytest.approx(1.2, rel=1e-6)
 
 
@@ -181,14 +200,17 @@ def test_a_geom_may_displace_as_its_convex_hull():
             r"hull 'left=concave' asks for 'concave'; did you mean 'convex'\? possible",
         ),
         ({"hull": "lift=convex"}, "no moving geom matches 'lift'; did you mean 'left'"),
-        ({"fill": "left=1.5"}, "fill 'left=1.5' is no part of a volume: it must be above 0 and at most 1"),
+        (
+            {"fill": "left=1.5"},
+            "fill 'left=1.5' is no part of a volume: it must be above 0 and at most 1",
+        ),
         ({"fill": "left"}, "fill 'left' is no part of a volume"),
         ({"fill": []}, "an empty choice of fill displaces nothing"),
     ],
 )
 def test_choices_that_make_no_sense_are_told(options, told):
     with pytest.raises(ModelError, match=told):
-        displacing_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.5, turn=0)), **options)
+        find_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.5, turn=0)), **options)
 
 
 @pytest.mark.parametrize("turn", [0, 180])
@@ -196,7 +218,7 @@ def test_geoms_that_touch_do_not_overlap(turn):
     model = mujoco.MjModel.from_xml_string(PAIR.format(x=0.4, turn=turn))
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert len(displacing_hulls(model)) == 2
+        assert len(find_hulls(model)) == 2
 
 
 def mesh_model(vertices, faces):
@@ -211,11 +233,13 @@ def mesh_model(vertices, faces):
 def test_an_open_mesh_is_refused_by_the_name_of_its_geom():
     box = shapes.box((1.0, 0.5, 0.3))
     tub = mesh_model(box.vertices, box.faces[box.area_vectors[:, 2] <= 0.0])
-    with pytest.raises(MeshError, match=r"mesh 'tub' of geom 'tub': it is open: 1 hole\(s\) with 4 edges"):
+    with pytest.raises(
+        MeshError, match=r"mesh 'tub' of geom 'tub': it is open: 1 hole\(s\) with 4 edges"
+    ):
         Buoyancy(tub)
 
 
 def test_a_mesh_is_taken_as_it_is_drawn_and_not_as_its_convex_hull():
     glass = two_cones(0.2, 0.3, sections=24)
     model = mesh_model(glass.vertices, glass.faces)
-    assert displacing_hulls(model)[0].mesh.volume == pytest.approx(glass.volume, rel=1e-6)
+    assert find_hulls(model)[0].mesh.volume == pytest.approx(glass.volume, rel=1e-6)

@@ -10,9 +10,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import Buoyancy, BuoyancyWarning, ModelError, RegularWave, Water, hydrostatics, mended
+from buoyancy_mj import (
+    Buoyancy,
+    BuoyancyWarning,
+    ModelError,
+    RegularWave,
+    Water,
+    hydrostatics,
+    repair,
+)
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.vessel import vessel_of
+from buoyancy_mj.statics.vessel import build_vessel
 from tests import naive, vessels
 
 
@@ -30,7 +38,9 @@ def test_a_box_has_its_metacentric_heights_and_periods():
     found = hydrostatics(vessels.box())
     assert (found.displacement, found.volume) == pytest.approx((600.0, 0.6), rel=1e-12)
     assert (found.draft, found.KB, found.KG) == pytest.approx((0.3, 0.15, 0.3), rel=1e-12)
-    assert (found.BMt, found.GMt, found.KMt) == pytest.approx((1 / 3.6, 0.127778, 0.15 + 1 / 3.6), abs=1e-6)
+    assert (found.BMt, found.GMt, found.KMt) == pytest.approx(
+        (1 / 3.6, 0.127778, 0.15 + 1 / 3.6), abs=1e-6
+    )
     assert found.BMl == pytest.approx(4 / 3.6, rel=1e-12)
     assert pytest.approx(found.GMt, rel=1e-12) == found.GM
     assert (found.waterline_length, found.waterline_beam) == pytest.approx((2.0, 1.0), rel=1e-12)
@@ -40,7 +50,9 @@ def test_a_box_has_its_metacentric_heights_and_periods():
     assert (heave, roll) == pytest.approx((1.0988, 1.8893), abs=5e-5)
 
 
-@pytest.mark.parametrize(("beam", "stable"), [(0.30, False), (0.7071, True), (0.8165 * 0.999 * 0.5, False)])
+@pytest.mark.parametrize(
+    ("beam", "stable"), [(0.30, False), (0.7071, True), (0.8165 * 0.999 * 0.5, False)]
+)
 def test_the_floating_cuboid_of_openfoam_wants_to_tip_and_a_wide_one_not(beam, stable):
     # P21, OpenFOAM's floatingObject: 0.3 x 0.2 x 0.5 tall, 500 kg/m^3, draft 0.25, upright GM = 0.125 + B^2 / 3 - 0.25
     found = hydrostatics(vessels.box((0.1, 0.5 * beam, 0.25), 500.0 * 0.2 * beam * 0.5))
@@ -104,7 +116,7 @@ def test_turned_over_a_body_keeps_the_product_of_volume_and_metacentric_height(s
 def test_the_tanker_of_mss_has_the_hydrostatics_that_wamit_gives():
     # P12: WAMIT volumes 92309.5, 92313.2, 92314.5, CB (3.9259, 0, -4.8155), C33 10221.5, C35 31916, C44 9.2149e5 from
     # the centroids of its panels (an exact cut gives 9.25441e5), C55 4.3472e7; about CG (3.93, 0, 2.5), over rho g
-    mesh, notices = mended(*vessels.tanker())
+    mesh, notices = repair(*vessels.tanker())
     assert "36 hole(s) with 392 edges" in notices[-1]
     model = vessels.of_mesh(mesh, 1025.0 * 92313.2, (3.93, 0.0, 2.5))
     with pytest.warns(BuoyancyWarning, match="257 m long"):
@@ -146,7 +158,9 @@ def test_the_bluerov2_heavy_swings_with_its_periods():
     added = (6.36, 7.12, 18.68, 0.189, 0.135, 0.222)
     assert found.natural_periods(added)[1:] == pytest.approx([3.672, 3.311], rel=1e-3)
     assert math.isinf(found.natural_periods()[0])
-    assert (found.waterplane_area, found.GMt, found.GMl) == pytest.approx((0.0, 0.01, 0.01), rel=1e-9)
+    assert (found.waterplane_area, found.GMt, found.GMl) == pytest.approx(
+        (0.0, 0.01, 0.01), rel=1e-9
+    )
     # the restoring matrix of Fossen for W and B at r_g = 0, r_b = (0, 0, -z_b): diag(z_b B, z_b B) for small angles
     assert found.stiffness[3:5, 3:5] == pytest.approx(np.diag([1.31454] * 2), rel=1e-6)
 
@@ -165,7 +179,10 @@ def test_the_remus_100_swings_with_its_periods():
     # Lamb's spheroid (Fossen 2021, sec. 8.4), about its centre
     e = math.sqrt(1.0 - (b / a) ** 2)
     log = math.log((1 + e) / (1 - e))
-    alpha, beta = 2 * (1 - e * e) / e**3 * (0.5 * log - e), 1 / e**2 - (1 - e * e) / (2 * e**3) * log
+    alpha, beta = (
+        2 * (1 - e * e) / e**3 * (0.5 * log - e),
+        1 / e**2 - (1 - e * e) / (2 * e**3) * log,
+    )
     k1, k2 = alpha / (2 - alpha), beta / (2 - beta)
     k5 = e**4 * (beta - alpha) / ((2 - e * e) * (2 * e * e - (2 - e * e) * (beta - alpha)))
     # roll about the centre of buoyancy: 0.3 of the moment there
@@ -199,7 +216,9 @@ def test_the_otter_has_its_metacentres_and_restoring_matrix():
     inertial = f'<inertial pos="0 0 {0.441997 - draft}" mass="80" diaginertia="10 10 10"/>'
     found = hydrostatics(vessels.of_geoms(geoms, inertial), Water(density=1025.0))
     assert found.displacement == pytest.approx(80.0, rel=1e-6)
-    assert (found.KB, found.BMt, found.BMl) == pytest.approx((0.136585, 1.537912, 3.416667), rel=1e-5)
+    assert (found.KB, found.BMt, found.BMl) == pytest.approx(
+        (0.136585, 1.537912, 3.416667), rel=1e-5
+    )
     assert (found.GMt, found.GMl) == pytest.approx((1.232500, 3.111255), rel=1e-5)
     assert np.diag(found.stiffness)[2:5] == pytest.approx([7541.44, 967.27, 2441.71], rel=1e-4)
 
@@ -233,7 +252,7 @@ def test_everything_equals_capytaine_on_the_same_mesh(name, height, roll, pitch)
         }[name]
         model = vessels.of_mesh(mesh, 300.0, (0.1, -0.05, -0.1))
     turn = Rotation.from_euler("YX", [pitch, roll])
-    vessel = vessel_of(model, qpos=at(height, turn))
+    vessel = build_vessel(model, qpos=at(height, turn))
     found = hydrostatics(model, qpos=at(height, turn))
     # Capytaine's axes are the world's; the vessel heads along x
     assert found.heading == pytest.approx(0.0, abs=1e-12)
@@ -241,7 +260,12 @@ def test_everything_equals_capytaine_on_the_same_mesh(name, height, roll, pitch)
     whole = capytaine.Mesh(
         vertices=np.vstack([part.vertices for part in parts]),
         faces=np.vstack(
-            [p.faces + n for p, n in zip(parts, np.cumsum([0] + [len(p.vertices) for p in parts]), strict=False)]
+            [
+                p.faces + n
+                for p, n in zip(
+                    parts, np.cumsum([0] + [len(p.vertices) for p in parts]), strict=False
+                )
+            ]
         ),
     ).with_quadrature("Gauss-Legendre 2")
     body = capytaine.FloatingBody(
@@ -254,9 +278,13 @@ def test_everything_equals_capytaine_on_the_same_mesh(name, height, roll, pitch)
     assert found.volume == pytest.approx(body.disp_volume, rel=1e-8)
     assert found.centre_of_buoyancy == pytest.approx(body.center_of_buoyancy, abs=1e-8 * size)
     assert found.wetted_area == pytest.approx(body.wet_surface_area, rel=1e-8)
-    assert found.waterplane_area == pytest.approx(body.waterplane_area, rel=1e-8, abs=1e-8 * size**2)
+    assert found.waterplane_area == pytest.approx(
+        body.waterplane_area, rel=1e-8, abs=1e-8 * size**2
+    )
     if found.waterplane_area:
-        assert found.centre_of_flotation[:2] == pytest.approx(body.waterplane_center, abs=1e-8 * size)
+        assert found.centre_of_flotation[:2] == pytest.approx(
+            body.waterplane_center, abs=1e-8 * size
+        )
     stiffness = body.compute_hydrostatic_stiffness(rho=1000.0, g=9.81).to_numpy()
     assert found.stiffness == pytest.approx(stiffness, abs=1e-8 * 1000.0 * 9.81 * size**3)
 
@@ -283,7 +311,9 @@ def forces_at(model, qpos):
 def test_stiffness_is_minus_the_derivative_of_the_exact_forces(seed):
     rng = np.random.default_rng(seed)
     mesh = vessels.dented(seed)
-    model = vessels.of_mesh(mesh, 0.5 * 1000.0 * mesh.volume, mesh.centroid + rng.uniform(-0.1, 0.1, 3))
+    model = vessels.of_mesh(
+        mesh, 0.5 * 1000.0 * mesh.volume, mesh.centroid + rng.uniform(-0.1, 0.1, 3)
+    )
     turn, height = Rotation.random(random_state=seed), rng.uniform(-0.2, 0.2)
     found = hydrostatics(model, qpos=at(height, turn, *rng.uniform(-9, 9, 2)))
     centre = found.centre_of_gravity
@@ -299,7 +329,9 @@ def test_stiffness_is_minus_the_derivative_of_the_exact_forces(seed):
             place = centre + motion[:3] - moved.apply(model.body_ipos[1])
             ends.append(yaw @ forces_at(model, [*place, *moved.as_quat(scalar_first=True)]))
         slope = -(ends[0] - ends[1]) / (2.0 * step)
-        assert found.stiffness[:, column] == pytest.approx(slope, abs=1e-4 * np.abs(found.stiffness).max())
+        assert found.stiffness[:, column] == pytest.approx(
+            slope, abs=1e-4 * np.abs(found.stiffness).max()
+        )
 
 
 # vehicles
@@ -317,7 +349,9 @@ def test_an_articulated_vehicle_is_measured_at_its_joint_angles():
     down = hydrostatics(model, qpos=[*model.qpos0[:7], math.radians(135)])
     assert up.centre_of_gravity == pytest.approx([3, 2, 10 * 0.7 / 210], rel=1e-12)
     s = math.sin(math.radians(135))
-    assert down.centre_of_gravity == pytest.approx([3 + 10 * 0.5 * s / 210, 2, 10 * (0.2 - 0.5 * s) / 210], rel=1e-12)
+    assert down.centre_of_gravity == pytest.approx(
+        [3 + 10 * 0.5 * s / 210, 2, 10 * (0.2 - 0.5 * s) / 210], rel=1e-12
+    )
     assert up.volume == pytest.approx(0.4, rel=1e-12)
     assert down.volume > 0.4
     assert up.mass_matrix[4, 4] > down.mass_matrix[4, 4] > 200 * (2**2 + 0.4**2) / 12
@@ -341,17 +375,34 @@ def test_nothing_changes_where_the_vessel_stands_or_which_way_it_heads(x, y, yaw
     base = hydrostatics(model, qpos=at(0.1, attitude))
     turned = Rotation.from_euler("z", yaw)
     moved = hydrostatics(model, Water(level=level), at(0.1 + level, turned * attitude, x, y))
-    for name in ("volume", "wetted_area", "waterplane_length", "GMt", "GMl", "GM", "draft", "trim", "heel"):
+    for name in (
+        "volume",
+        "wetted_area",
+        "waterplane_length",
+        "GMt",
+        "GMl",
+        "GM",
+        "draft",
+        "trim",
+        "heel",
+    ):
         name = name.replace("waterplane_length", "waterline_length")
         assert getattr(moved, name) == pytest.approx(getattr(base, name), rel=1e-8, abs=1e-9)
     assert moved.stiffness == pytest.approx(base.stiffness, rel=1e-7, abs=1e-5)
     assert moved.mass_matrix == pytest.approx(base.mass_matrix, abs=1e-9 * 400)
-    assert moved.centre_of_buoyancy == pytest.approx(turned.apply(base.centre_of_buoyancy) + [x, y, level], abs=1e-8)
+    assert moved.centre_of_buoyancy == pytest.approx(
+        turned.apply(base.centre_of_buoyancy) + [x, y, level], abs=1e-8
+    )
 
 
 def test_in_the_air_nothing_is_wet_and_nothing_breaks():
     found = hydrostatics(vessels.box(), qpos=at(9.0))
-    assert (found.volume, found.wetted_area, found.waterplane_area, found.waterline_length) == (0.0, 0.0, 0.0, 0.0)
+    assert (found.volume, found.wetted_area, found.waterplane_area, found.waterline_length) == (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+    )
     assert found.draft == pytest.approx(-8.7)
     assert math.isnan(found.GMt)
     assert np.isinf(found.natural_periods()).all()
@@ -374,7 +425,8 @@ def test_of_several_vehicles_one_is_named():
     assert hydrostatics(model, body="barge").volume == pytest.approx(1.2)
     assert hydrostatics(model, body="barge", qpos=at(0.1)).volume == pytest.approx(0.8)
     with pytest.raises(
-        ModelError, match=r"no body 'barg' floats in this model; did you mean 'barge'\? possible: barge, tug"
+        ModelError,
+        match=r"no body 'barg' floats in this model; did you mean 'barge'\? possible: barge, tug",
     ):
         hydrostatics(model, body="barg")
 
@@ -384,7 +436,11 @@ def test_of_several_vehicles_one_is_named():
     [
         ('gravity="0 0 0"', {}, "gravity is 0 0 0 or disabled; floating needs it along -z"),
         ('gravity="1 0 -9"', {}, "gravity is 1 0 -9 or disabled"),
-        ("", {"qpos": [0, 0, 0]}, r"qpos has shape \(3,\); it must be 7 finite coordinates of the model, or position and"),
+        (
+            "",
+            {"qpos": [0, 0, 0]},
+            r"qpos has shape \(3,\); it must be 7 finite coordinates of the model, or position and",
+        ),
         ("", {"qpos": [0, 0, math.nan, 1, 0, 0, 0]}, "must be 7 finite coordinates"),
         ("", {"geoms": "keel"}, "no moving geom matches 'keel'"),
     ],

@@ -12,11 +12,11 @@ from typer.testing import CliRunner
 
 from buoyancy_mj import BuoyancyWarning, Water, equilibrium, hydrostatics, righting_arm
 from buoyancy_mj.cli import app
-from buoyancy_mj.inspection.inspection import inspected
-from buoyancy_mj.inspection.report import markdown, plain, sections
+from buoyancy_mj.inspection.inspection import inspect_model
+from buoyancy_mj.inspection.report import sections, to_json, to_markdown
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.curves import draft_curves, waterlines
-from buoyancy_mj.statics.vessel import vessel_of
+from buoyancy_mj.statics.curves import compute_draft_curves, waterlines
+from buoyancy_mj.statics.vessel import build_vessel
 from tests import vessels
 
 HEAVY_BELOW = '<inertial pos=".1 0 -.1" mass="400" diaginertia="9 9 9"/>'
@@ -42,7 +42,7 @@ def mesh_model(vertices, faces, mass=20.0, **arguments):
 
 def only(model, **choice):
     """What floats of a model with one vehicle."""
-    (floating,) = inspected(model, **choice).floating
+    (floating,) = inspect_model(model, **choice).floating
     return floating
 
 
@@ -69,10 +69,13 @@ def test_what_does_not_stay_as_drawn_is_told():
 
 def test_a_lean_is_told():
     model = vessels.of_geoms(
-        '<geom type="box" size="1 .5 .3"/>', '<inertial pos="0 .02 -.1" mass="600" diaginertia="9 9 9"/>'
+        '<geom type="box" size="1 .5 .3"/>',
+        '<inertial pos="0 .02 -.1" mass="600" diaginertia="9 9 9"/>',
     )
     found = only(model)
-    assert f", heel {np.degrees(found.rest.hydrostatics.heel):.1f}, trim 0.0 degrees" in found.sentence
+    assert (
+        f", heel {np.degrees(found.rest.hydrostatics.heel):.1f}, trim 0.0 degrees" in found.sentence
+    )
     assert found.rest.hydrostatics.heel < -0.05
 
 
@@ -88,7 +91,7 @@ def test_what_hangs_on_joints_is_weighed():
 
 def test_density_of_the_water_counts():
     assert only(vessels.box(mass=1201.3)).sentence.startswith("sinks")
-    (floating,) = inspected(vessels.box(mass=1201.3), Water(density=1025.0)).floating
+    (floating,) = inspect_model(vessels.box(mass=1201.3), Water(density=1025.0)).floating
     assert floating.sentence.startswith("floats: 28.7 kg reserve")
 
 
@@ -127,13 +130,17 @@ def test_mass_that_nobody_stated_is_told():
         '<mujoco><worldbody><body><freejoint/><geom type="box" size=".5 .5 .5"/></body></worldbody></mujoco>'
     )
     (note,) = only(model).notes
-    assert "just what 1000 kg/m^3 makes of its volume: MuJoCo's choice where a model states no mass; give its bodies" in note
+    assert (
+        "just what 1000 kg/m^3 makes of its volume: MuJoCo's choice where a model states no mass; give its bodies"
+        in note
+    )
 
 
 def test_a_slip_of_units_is_told():
     found = only(mesh_model(1000.0 * BALL.vertices, BALL.faces))
     assert any(
-        "check the scale of its meshes (a mesh drawn in millimetres wants scale='0.001" in note for note in found.notes
+        "check the scale of its meshes (a mesh drawn in millimetres wants scale='0.001" in note
+        for note in found.notes
     )
 
 
@@ -142,7 +149,7 @@ def test_a_slip_of_units_is_told():
 
 def doctor(vertices, faces):
     """The part, and all that the report says of meshes."""
-    found = inspected(mesh_model(vertices, faces))
+    found = inspect_model(mesh_model(vertices, faces))
     (part,) = found.parts
     text = "\n".join(note for section in sections(found) for note in section.notes)
     return part, text
@@ -151,7 +158,7 @@ def doctor(vertices, faces):
 def test_a_sound_mesh_has_no_fault():
     part, text = doctor(BALL.vertices, BALL.faces)
     assert part.diagnosis.notices == []
-    assert not part.diagnosis.mended
+    assert not part.diagnosis.repaired
     assert part.notes == ()
     assert "hull" not in text.replace("'hull'", "")
 
@@ -165,9 +172,14 @@ def test_thin_walls_open_to_the_sea_are_told():
     rim = edges.edges[trimesh.grouping.group_rows(edges.edges_sorted, require_count=1)]
     n = len(BALL.vertices)
     band = np.vstack(
-        [np.column_stack([rim[:, 1], rim[:, 0], rim[:, 0] + n]), np.column_stack([rim[:, 1], rim[:, 0] + n, rim[:, 1] + n])]
+        [
+            np.column_stack([rim[:, 1], rim[:, 0], rim[:, 0] + n]),
+            np.column_stack([rim[:, 1], rim[:, 0] + n, rim[:, 1] + n]),
+        ]
     )
-    part, text = doctor(np.vstack([BALL.vertices, inner.vertices]), np.vstack([top, top[:, ::-1] + n, band]))
+    part, text = doctor(
+        np.vstack([BALL.vertices, inner.vertices]), np.vstack([top, top[:, ::-1] + n, band])
+    )
     assert part.mesh is not None
     assert "its walls are about 4.95 mm thick and it displaces" in text
     assert "--hull convex" in text
@@ -183,13 +195,15 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
         userface=sides.ravel(),
         inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
     )
-    body = spec.worldbody.add_body(name="boat", mass=5.0, inertia=[1, 1, 1], ipos=[0, 0, 0], explicitinertial=True)
+    body = spec.worldbody.add_body(
+        name="boat", mass=5.0, inertia=[1, 1, 1], ipos=[0, 0, 0], explicitinertial=True
+    )
     body.add_freejoint()
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="tub", name="tub")
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1], pos=[0, 0, -1], name="keel")
-    found = inspected(spec.compile())
+    found = inspect_model(spec.compile())
     tub, keel = found.parts
-    assert tub.taken
+    assert tub.displaces
     assert tub.mesh is None
     assert keel.mesh is not None
     (problem,) = found.problems
@@ -198,7 +212,7 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
     (floating,) = found.floating
     assert floating.total.displaced == pytest.approx(8.0)
     # as its convex hull it displaces
-    convex = inspected(spec.compile(), hull="tub=convex")
+    convex = inspect_model(spec.compile(), hull="tub=convex")
     assert convex.problems == ()
     assert convex.parts[0].convex
     assert convex.floating[0].total.displaced == pytest.approx(72.0, rel=1e-6)
@@ -210,14 +224,14 @@ def test_what_does_not_displace_says_why():
         <body name="boat"><freejoint/><geom name="hull" type="box" size=".5 .5 .5" mass="9"/>
         <geom name="paint" type="box" size=".6 .5 .5" contype="0" conaffinity="0" mass="0"/></body></worldbody></mujoco>"""
     )
-    reasons = {part.name: part.reason for part in inspected(model).parts}
+    reasons = {part.name: part.reason for part in inspect_model(model).parts}
     assert reasons == {
         "floor": "a plane bounds no volume",
         "rock": "its body cannot move",
         "hull": "collision geom",
         "paint": "visual; its body has collision geoms",
     }
-    assert {p.name: p.taken for p in inspected(model, geoms="paint").parts}["hull"] is False
+    assert {p.name: p.displaces for p in inspect_model(model, geoms="paint").parts}["hull"] is False
 
 
 def test_overlaps_between_bodies_are_told():
@@ -226,7 +240,7 @@ def test_overlaps_between_bodies_are_told():
         <body name="b" pos=".9 0 0"><joint/><geom name="two" type="box" size=".5 .5 .5" mass="9"/></body></body>
         </worldbody></mujoco>"""
     )
-    found = inspected(model)
+    found = inspect_model(model)
     ((one, two, volume),) = found.overlaps
     assert (one, two) == ("one", "two")
     assert volume == pytest.approx(0.1)
@@ -238,8 +252,8 @@ def test_overlaps_between_bodies_are_told():
 
 
 def test_draft_curves_end_with_the_whole_volume_and_waterlines_close():
-    vessel = vessel_of(vessels.of_mesh(vessels.dented(2), 400.0))
-    curves = draft_curves(vessel, np.eye(3), 41)
+    vessel = build_vessel(vessels.of_mesh(vessels.dented(2), 400.0))
+    curves = compute_draft_curves(vessel, np.eye(3), 41)
     assert curves.volume[-1] == pytest.approx(vessel.volume, rel=1e-4)
     assert (np.diff(curves.volume) > 0.0).all()
     # the waterplane is the slope of the volume
@@ -256,13 +270,13 @@ def test_draft_curves_end_with_the_whole_volume_and_waterlines_close():
 
 
 def test_the_report_is_markdown_and_json():
-    found = inspected(vessels.box(), title="raft")
-    text = markdown(found, [("Righting arm", "gz.png")])
+    found = inspect_model(vessels.box(), title="raft")
+    text = to_markdown(found, [("Righting arm", "gz.png")])
     assert text.startswith("# raft\n")
     assert "floats: 600 kg reserve, draft 0.3 m, stable, GM 0.128 m" in text
     assert "| GM across, along | 0.1278, 0.9611 | m |" in text
     assert "![Righting arm](gz.png)" in text
-    values = json.loads(json.dumps(plain(found), allow_nan=False))
+    values = json.loads(json.dumps(to_json(found), allow_nan=False))
     (floating,) = values["floating"]
     assert floating["rest"]["hydrostatics"]["GMt"] == pytest.approx(hydrostatics(vessels.box()).GMt)
     assert floating["rest"]["hydrostatics"]["natural_periods"][0] == pytest.approx(1.0988, abs=1e-4)
@@ -273,7 +287,7 @@ def test_the_report_is_markdown_and_json():
 
 def test_centroids_are_in_the_frame_of_the_body():
     model = vessels.of_mesh(vessels.dented(4).transformed(np.eye(3), (1.0, 2.0, 3.0)), 400.0)
-    (part,) = inspected(model).parts
+    (part,) = inspect_model(model).parts
     assert part.centroid == pytest.approx(vessels.dented(4).centroid + [1.0, 2.0, 3.0], abs=1e-6)
 
 
@@ -290,17 +304,29 @@ def raft(tmp_path, monkeypatch):
     """A vehicle whose ball lacks a triangle and has one turned, and the command that reads it."""
     faces = np.vstack([BALL.faces[1:], BALL.faces[5:6]])
     faces[3] = faces[3][::-1]
-    trimesh.Trimesh(BALL.vertices + [0.05, 0.02, 0.0], faces, process=False).export(tmp_path / "hull.obj")
+    trimesh.Trimesh(BALL.vertices + [0.05, 0.02, 0.0], faces, process=False).export(
+        tmp_path / "hull.obj"
+    )
     (tmp_path / "raft.xml").write_text(RAFT)
     monkeypatch.chdir(tmp_path)
     # by its whole name: MuJoCo remembers meshes by the name of their file, and each test has its own
-    return lambda *arguments: CliRunner().invoke(app, [arguments[0], str(tmp_path / "raft.xml"), *arguments[1:]])
+    return lambda *arguments: CliRunner().invoke(
+        app, [arguments[0], str(tmp_path / "raft.xml"), *arguments[1:]]
+    )
 
 
 def test_inspect_prints_tables(raft):
     result = raft("inspect", "--water", "density=1025")
     assert result.exit_code == 0, result.output
-    for word in ("what displaces water", "1 holes", "wound backwards", "floats:", "At rest", "Every pose", "Righting arm"):
+    for word in (
+        "what displaces water",
+        "1 holes",
+        "wound backwards",
+        "floats:",
+        "At rest",
+        "Every pose",
+        "Righting arm",
+    ):
         assert word in result.stdout
 
 
@@ -330,7 +356,9 @@ def test_inspect_repairs_what_is_safe(raft, tmp_path):
     assert after["geoms"][0]["mesh"]["notices"] == []
     assert after["geoms"][0]["volume"] == pytest.approx(before["geoms"][0]["volume"], rel=1e-6)
     for name in ("centre_of_buoyancy", "centre_of_gravity", "mass"):
-        assert after["floating"][0][name] == pytest.approx(before["floating"][0][name], rel=1e-5, abs=1e-6)
+        assert after["floating"][0][name] == pytest.approx(
+            before["floating"][0][name], rel=1e-5, abs=1e-6
+        )
     # what was there is untouched
     assert "mended" not in (tmp_path / "raft.xml").read_text()
 
@@ -408,5 +436,5 @@ def test_bad_flags_are_told_in_a_sentence(raft, arguments, message):
 
 
 def test_what_was_mended_is_no_warning_of_the_inspection(recwarn):
-    inspected(mesh_model(BALL.vertices, BALL.faces[1:]))
+    inspect_model(mesh_model(BALL.vertices, BALL.faces[1:]))
     assert not [entry for entry in recwarn if issubclass(entry.category, BuoyancyWarning)]

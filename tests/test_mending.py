@@ -2,30 +2,30 @@ import numpy as np
 import pytest
 import trimesh
 
-from buoyancy_mj import MeshError, mended
+from buoyancy_mj import MeshError, repair
 from buoyancy_mj.kernels.rays import misenclosed
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.repair import diagnosed
+from buoyancy_mj.meshes.repair import diagnose
 
 BOX = shapes.box((1.0, 0.5, 0.3))
 SPHERE = trimesh.creation.icosphere(subdivisions=4)
 
 
 def test_a_good_mesh_is_left_as_it_is():
-    mesh, notices = mended(BOX.vertices, BOX.faces)
+    mesh, notices = repair(BOX.vertices, BOX.faces)
     assert notices == []
     assert mesh.volume == pytest.approx(1.2, rel=1e-14)
 
 
 def test_a_triangle_soup_is_welded():
     soup = BOX.vertices[BOX.faces].reshape(-1, 3)
-    mesh, notices = mended(soup, np.arange(len(soup)).reshape(-1, 3))
+    mesh, notices = repair(soup, np.arange(len(soup)).reshape(-1, 3))
     assert len(mesh.vertices) == 8
     assert notices == []
 
 
 def test_an_inside_out_mesh_is_turned_with_a_notice():
-    mesh, notices = mended(BOX.vertices, BOX.faces[:, ::-1], name="hull")
+    mesh, notices = repair(BOX.vertices, BOX.faces[:, ::-1], name="hull")
     assert mesh.volume == pytest.approx(1.2)
     assert notices == ["hull: it was inside out; its faces were turned outward"]
 
@@ -33,7 +33,7 @@ def test_an_inside_out_mesh_is_turned_with_a_notice():
 def test_faces_wound_backwards_are_turned_with_a_notice():
     faces = BOX.faces.copy()
     faces[3] = faces[3][::-1]
-    mesh, notices = mended(BOX.vertices, faces, name="hull")
+    mesh, notices = repair(BOX.vertices, faces, name="hull")
     assert mesh.volume == pytest.approx(1.2)
     assert notices == ["hull: 1 triangles were wound backwards and were turned"]
 
@@ -45,7 +45,7 @@ def pair(other, inward):
 
 def test_a_piece_that_is_inside_out_is_turned():
     beside = shapes.box((0.1, 0.1, 0.1)).transformed(np.eye(3), (3.0, 0.0, 0.0))
-    mesh, notices = mended(*pair(beside, inward=True), name="pair")
+    mesh, notices = repair(*pair(beside, inward=True), name="pair")
     assert mesh.volume == pytest.approx(1.2 + 0.008, rel=1e-12)
     assert notices == ["pair: 1 of its 2 pieces was inside out; its faces were turned outward"]
 
@@ -53,48 +53,63 @@ def test_a_piece_that_is_inside_out_is_turned():
 def test_water_does_not_reach_a_sealed_cavity():
     # a pressure hull drawn with its inner wall
     inside = shapes.box((0.9, 0.4, 0.2))
-    mesh, notices = mended(*pair(inside, inward=True), name="hull")
+    mesh, notices = repair(*pair(inside, inward=True), name="hull")
     assert mesh.volume == pytest.approx(1.2, rel=1e-12)
-    assert notices == ["hull: water cannot reach the 0.576 m^3 sealed inside it, which displace like solid"]
+    assert notices == [
+        "hull: water cannot reach the 0.576 m^3 sealed inside it, which displace like solid"
+    ]
 
 
 def test_a_ball_in_the_hole_of_a_torus_is_no_cavity():
     torus, ball = trimesh.creation.torus(1.0, 0.2), trimesh.creation.icosphere(radius=0.3)
     vertices = np.vstack([torus.vertices, ball.vertices])
-    mesh, notices = mended(vertices, np.vstack([torus.faces, ball.faces[:, ::-1] + len(torus.vertices)]))
+    mesh, notices = repair(
+        vertices, np.vstack([torus.faces, ball.faces[:, ::-1] + len(torus.vertices)])
+    )
     assert mesh.volume == pytest.approx(torus.volume + ball.volume, rel=1e-12)
     assert "1 of its 2 pieces was inside out" in notices[0]
 
 
 def test_a_mesh_that_may_be_in_millimetres_is_told():
-    _, notices = mended(BOX.vertices * 200.0, BOX.faces, name="hull")
-    assert notices == ["hull: it is 400 m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'"]
+    _, notices = repair(BOX.vertices * 200.0, BOX.faces, name="hull")
+    assert notices == [
+        "hull: it is 400 m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'"
+    ]
 
 
 def test_degenerate_and_repeated_triangles_go():
     faces = np.vstack([BOX.faces, [[0, 0, 1]], BOX.faces[:1]])
-    mesh, _ = mended(BOX.vertices, faces)
+    mesh, _ = repair(BOX.vertices, faces)
     assert len(mesh.faces) == 12
 
 
 def test_a_small_hole_is_closed_and_its_doubt_told():
-    mesh, notices = mended(SPHERE.vertices, SPHERE.faces[3:], name="float")
+    mesh, notices = repair(SPHERE.vertices, SPHERE.faces[3:], name="float")
     assert mesh.volume == pytest.approx(SPHERE.volume, rel=1e-3)
-    assert notices == ["float: 1 hole(s) with 9 edges put 0.000212 m^3 (0.01% of its volume) in doubt; they were closed"]
+    assert notices == [
+        "float: 1 hole(s) with 9 edges put 0.000212 m^3 (0.01% of its volume) in doubt; they were closed"
+    ]
 
 
 def test_an_open_box_is_refused_with_the_volume_in_doubt():
     with pytest.raises(
-        MeshError, match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, take its"
+        MeshError,
+        match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, take its",
     ):
-        mended(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
+        repair(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
 
 
 def test_pieces_that_overlap_are_joined_and_the_volume_told():
     other = BOX.transformed(np.eye(3), (0.5, 0.0, 0.0))
-    mesh, notices = mended(np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), name="pair")
+    mesh, notices = repair(
+        np.vstack([BOX.vertices, other.vertices]),
+        np.vstack([BOX.faces, other.faces + 8]),
+        name="pair",
+    )
     assert mesh.volume == pytest.approx(1.2 + 0.3, rel=1e-12)
-    assert notices == ["pair: its 2 pieces overlap; they were joined, and 0.9 m^3 no longer count twice"]
+    assert notices == [
+        "pair: its 2 pieces overlap; they were joined, and 0.9 m^3 no longer count twice"
+    ]
 
 
 def test_a_mesh_that_crosses_itself_is_refused():
@@ -102,35 +117,43 @@ def test_a_mesh_that_crosses_itself_is_refused():
     ball = SPHERE.vertices.copy()
     ball[ball[:, 2] > 0.7, 2] -= 2.5
     with pytest.raises(
-        MeshError, match=r"ring: it crosses itself: about .* is enclosed twice and .* inside out, .*--hull convex"
+        MeshError,
+        match=r"ring: it crosses itself: about .* is enclosed twice and .* inside out, .*--hull convex",
     ):
-        mended(ball, SPHERE.faces, name="ring")
+        repair(ball, SPHERE.faces, name="ring")
 
 
 @pytest.mark.parametrize("scale", [1e6, 1e-6])
 def test_an_absurd_scale_is_refused(scale):
-    with pytest.raises(MeshError, match=r"hull: its longest side is 2e.* m, possible are 0.0001 to 1000 m; scale the mesh"):
-        mended(BOX.vertices * scale, BOX.faces, name="hull")
+    with pytest.raises(
+        MeshError,
+        match=r"hull: its longest side is 2e.* m, possible are 0.0001 to 1000 m; scale the mesh",
+    ):
+        repair(BOX.vertices * scale, BOX.faces, name="hull")
 
 
 def test_a_flat_mesh_is_refused():
     with pytest.raises(MeshError, match="flat and encloses no volume"):
-        mended([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]])
+        repair([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2], [0, 2, 1]])
 
 
 def test_only_degenerate_triangles_are_refused():
     with pytest.raises(MeshError, match="all 1 triangles are degenerate"):
-        mended([[0, 0, 0], [1, 0, 0], [1, 0, 0]], [[0, 1, 2]])
+        repair([[0, 0, 0], [1, 0, 0], [1, 0, 0]], [[0, 1, 2]])
 
 
 def test_rays_measure_what_two_boxes_enclose_twice():
     other = BOX.transformed(np.eye(3), (0.5, 0.1, 0.05))
-    doubled, inverted = misenclosed(np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), 300)
+    doubled, inverted = misenclosed(
+        np.vstack([BOX.vertices, other.vertices]), np.vstack([BOX.faces, other.faces + 8]), 300
+    )
     assert doubled == pytest.approx(1.5 * 0.9 * 0.55, rel=0.01)
     assert inverted == 0.0
 
 
-@pytest.mark.parametrize("solid", [BOX, shapes.cylinder(0.3, 1.0), shapes.capsule(0.3, 0.5), shapes.sphere(1.0)])
+@pytest.mark.parametrize(
+    "solid", [BOX, shapes.cylinder(0.3, 1.0), shapes.capsule(0.3, 0.5), shapes.sphere(1.0)]
+)
 def test_rays_find_no_fault_with_a_sound_solid(solid):
     assert misenclosed(solid.vertices, solid.faces, 200) == (0.0, 0.0)
 
@@ -138,8 +161,13 @@ def test_rays_find_no_fault_with_a_sound_solid(solid):
 def test_a_diagnosis_counts_what_it_found():
     faces = np.vstack([SPHERE.faces[3:], [[0, 0, 1]], SPHERE.faces[5:6]])
     faces[10] = faces[10][::-1]
-    found = diagnosed(SPHERE.vertices, faces, name="float")
-    assert (found.triangles, found.degenerate, found.duplicates, found.backwards) == (len(faces), 1, 1, 1)
+    found = diagnose(SPHERE.vertices, faces, name="float")
+    assert (found.triangles, found.degenerate, found.duplicates, found.backwards) == (
+        len(faces),
+        1,
+        1,
+        1,
+    )
     assert [hole.edges for hole in found.holes] == [9]
     assert 0.0 < found.doubt < 1e-3 * SPHERE.volume
     assert found.holes[0].length == pytest.approx(9 * 0.0692, rel=0.1)
@@ -149,15 +177,17 @@ def test_a_diagnosis_counts_what_it_found():
 
 
 def test_a_diagnosis_of_what_is_refused_keeps_what_it_found():
-    tub = diagnosed(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
+    tub = diagnose(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
     assert tub.mesh is None
     assert tub.refusal.startswith("tub: it is open: 1 hole(s) with 4 edges")
-    assert tub.refusal.endswith("close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)")
+    assert tub.refusal.endswith(
+        "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)"
+    )
     assert [hole.length for hole in tub.holes] == pytest.approx([6.0])
 
 
 def test_a_diagnosis_counts_pieces_and_inner_shells():
     inside = shapes.box((0.9, 0.4, 0.2))
-    found = diagnosed(*pair(inside, inward=True))
+    found = diagnose(*pair(inside, inward=True))
     assert (found.pieces, found.shells) == (2, 1)
     assert found.sealed == pytest.approx(0.576)

@@ -33,7 +33,7 @@ from buoyancy_mj.scenes import catalog
 from buoyancy_mj.submersion import convex_hull
 from buoyancy_mj.submersion.convex_hull import hull_moments
 from buoyancy_mj.submersion.methods import METHODS
-from buoyancy_mj.submersion.sections import integrated, sections
+from buoyancy_mj.submersion.sections import integrate, sections
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -49,7 +49,9 @@ HOLLOW = {
     "hourglass": naive.two_cones(0.5, 1.0, sections=64),
     "two spheres": TriMesh(
         np.vstack([shapes.sphere(0.4).vertices + [1.0, 0.0, 0.2], shapes.sphere(0.4).vertices]),
-        np.vstack([shapes.sphere(0.4).faces, shapes.sphere(0.4).faces + len(shapes.sphere(0.4).vertices)]),
+        np.vstack(
+            [shapes.sphere(0.4).faces, shapes.sphere(0.4).faces + len(shapes.sphere(0.4).vertices)]
+        ),
     ),
 }
 SHAPES = CONVEX | HOLLOW
@@ -67,7 +69,10 @@ ALL = [
     Sections(axis=(0.0, 0.0, 1.0)),
     Sections(axis=(0.3, -0.5, 1.0), rule="simpson"),
 ]
-POSES = [((0.3, -2.0, z), Rotation.random(random_state=seed).as_matrix()) for seed, z in enumerate((-0.2, 0.0, 0.1))]
+POSES = [
+    ((0.3, -2.0, z), Rotation.random(random_state=seed).as_matrix())
+    for seed, z in enumerate((-0.2, 0.0, 0.1))
+]
 
 # one interface, one suite of shapes -----------------------------------------------------------------
 
@@ -90,7 +95,9 @@ def test_far_above_all_is_dry_and_far_below_all_is_wet(method, shape):
 
 @pytest.mark.parametrize("method", ALL, ids=repr)
 @pytest.mark.parametrize("shape", SHAPES)
-def test_moving_along_the_water_and_turning_about_the_vertical_move_the_submersion_along(method, shape):
+def test_moving_along_the_water_and_turning_about_the_vertical_move_the_submersion_along(
+    method, shape
+):
     place, turn = POSES[0]
     yaw = Rotation.from_euler("z", 0.7).as_matrix()
     here = submerge(SHAPES[shape], place, turn, method=method)
@@ -119,7 +126,9 @@ def test_on_hollow_meshes_sections_stay_right_and_hulls_are_too_large(shape, see
     mesh = HOLLOW[shape]
     pose = (0.0, 0.0, -0.35), Rotation.random(random_state=seed).as_matrix()
     truth = submerge(mesh, *pose).volume
-    assert submerge(mesh, *pose, method=Sections()).volume == pytest.approx(truth, abs=2e-3 * mesh.volume)
+    assert submerge(mesh, *pose, method=Sections()).volume == pytest.approx(
+        truth, abs=2e-3 * mesh.volume
+    )
     # what a hull fills; even so, without the cuts it may fall short of the surface
     assert submerge(mesh, *pose, method=ConvexHull(cut=True)).volume > truth + 0.02 * mesh.volume
 
@@ -129,15 +138,23 @@ def test_the_paper_s_hull_ends_at_the_last_vertex_below_the_surface():
     box = shapes.box((0.4, 0.3, 0.2))
     assert submerge(box, (0, 0, 0.0), method=ConvexHull()).volume == 0.0
     assert submerge(box, (0, 0, -0.199), method=ConvexHull()).volume == 0.0
-    assert submerge(box, (0, 0, -0.201), method=ConvexHull()).volume == pytest.approx(8 * 0.4 * 0.3 * 0.2, rel=1e-12)
-    assert submerge(box, (0, 0, 0.0), method=ConvexHull(cut=True)).volume == pytest.approx(4 * 0.4 * 0.3 * 0.2, rel=1e-12)
+    assert submerge(box, (0, 0, -0.201), method=ConvexHull()).volume == pytest.approx(
+        8 * 0.4 * 0.3 * 0.2, rel=1e-12
+    )
+    assert submerge(box, (0, 0, 0.0), method=ConvexHull(cut=True)).volume == pytest.approx(
+        4 * 0.4 * 0.3 * 0.2, rel=1e-12
+    )
 
 
 def test_it_nears_the_truth_from_below_as_vertices_grow_dense():
     errors = []
     for subdivisions in (2, 3, 4, 5):
         ball = trimesh_hull(trimesh.creation.icosphere(subdivisions=subdivisions))
-        errors.append(1.0 - submerge(ball, (0, 0, 0.3), method=ConvexHull()).volume / submerge(ball, (0, 0, 0.3)).volume)
+        errors.append(
+            1.0
+            - submerge(ball, (0, 0, 0.3), method=ConvexHull()).volume
+            / submerge(ball, (0, 0, 0.3)).volume
+        )
     assert all(0.0 < fine < 0.75 * coarse for coarse, fine in itertools.pairwise(errors))
     assert errors[-1] < 0.03
 
@@ -158,8 +175,11 @@ EDGES = {
     "coincident": np.ones((12, 3)),
     "on a line": np.outer(np.arange(9.0), [1.0, 2.0, -1.0]),
     "flat": np.column_stack([np.random.default_rng(1).random((50, 2)), np.zeros(50)]),
-    "flat and tilted": np.random.default_rng(2).random((50, 2)) @ [[1.0, 0.3, 0.2], [-0.4, 1.0, 0.7]],
-    "flat and far away": np.column_stack([np.random.default_rng(3).random((50, 2)), np.full(50, 1e3)]),
+    "flat and tilted": np.random.default_rng(2).random((50, 2))
+    @ [[1.0, 0.3, 0.2], [-0.4, 1.0, 0.7]],
+    "flat and far away": np.column_stack(
+        [np.random.default_rng(3).random((50, 2)), np.full(50, 1e3)]
+    ),
 }
 
 
@@ -170,10 +190,16 @@ def test_sets_without_volume_have_none(points):
     assert np.isnan(centroid).all()
 
 
-@given(hnp.arrays(float, st.tuples(st.integers(0, 12), st.just(3)), elements=st.integers(-3, 3).map(float)))
+@given(
+    hnp.arrays(
+        float, st.tuples(st.integers(0, 12), st.just(3)), elements=st.integers(-3, 3).map(float)
+    )
+)
 def test_any_set_has_the_volume_of_its_delaunay_cells(points):
     volume, centroid = hull_moments(points)
-    assert volume == pytest.approx(naive.hull_volume(points) if len(points) > 3 else 0.0, rel=1e-9, abs=1e-12)
+    assert volume == pytest.approx(
+        naive.hull_volume(points) if len(points) > 3 else 0.0, rel=1e-9, abs=1e-12
+    )
     if volume:
         assert (centroid >= points.min(axis=0) - 1e-9).all()
         assert (centroid <= points.max(axis=0) + 1e-9).all()
@@ -205,7 +231,7 @@ def poses_of(mesh, places, turns):
 
 
 def run(method, mesh, places, turns, water=None):
-    packed = method.packed([mesh], [0], [0], water or Water())
+    packed = method.pack([mesh], [0], [0], water or Water())
     volumes = [packed.submerge(*pose)[0, 0] for pose in poses_of(mesh, places, turns)]
     return np.array(volumes), packed.counts
 
@@ -252,9 +278,15 @@ def test_a_body_that_turns_loses_vertices_until_the_next_sort():
 
 def test_poses_set_by_hand_and_time_set_back_sort_anew():
     mesh = CONVEX["ellipsoid"]
-    packed = ConvexHull().packed([mesh], [0], [0], Water())
+    packed = ConvexHull().pack([mesh], [0], [0], Water())
     sorts = 0
-    for seed, time, fresh in ((0, 0.0, True), (1, 0.0, True), (2, 0.01, True), (2, 0.02, False), (2, 0.01, True)):
+    for seed, time, fresh in (
+        (0, 0.0, True),
+        (1, 0.0, True),
+        (2, 0.01, True),
+        (2, 0.02, False),
+        (2, 0.01, True),
+    ):
         turn = Rotation.random(random_state=seed).as_matrix()
         volume = packed.submerge(np.zeros((1, 3)), turn.reshape(1, 9), time)[0, 0]
         # sorted anew, vertices of one height may be summed in another order
@@ -266,10 +298,13 @@ def test_poses_set_by_hand_and_time_set_back_sort_anew():
 
 def test_runs_that_take_turns_keep_orders_of_their_own():
     mesh = CONVEX["ellipsoid"]
-    turns = [[Rotation.from_euler("x", side * 0.02 * step).as_matrix() for step in range(30)] for side in (1, -1)]
+    turns = [
+        [Rotation.from_euler("x", side * 0.02 * step).as_matrix() for step in range(30)]
+        for side in (1, -1)
+    ]
     places = [(0.0, 0.0, 0.05)] * 30
     alone = [run(ConvexHull(), mesh, places, turn)[0] for turn in turns]
-    packed = ConvexHull().packed([mesh], [0], [0], Water())
+    packed = ConvexHull().pack([mesh], [0], [0], Water())
     together = [
         [packed.submerge(*pose, number)[0, 0] for number, pose in enumerate(poses)]
         for poses in zip(*(poses_of(mesh, places, turn) for turn in turns), strict=True)
@@ -278,7 +313,7 @@ def test_runs_that_take_turns_keep_orders_of_their_own():
 
 
 def test_runs_that_ended_are_forgotten():
-    packed = ConvexHull().packed([CONVEX["box"]], [0], [0], Water())
+    packed = ConvexHull().pack([CONVEX["box"]], [0], [0], Water())
     for number in range(200):
         packed.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), 0.0, number)
     assert len(packed._runs) == convex_hull.MOST_RUNS
@@ -299,7 +334,9 @@ def test_the_cuts_are_found_from_a_walk_too():
 @pytest.mark.parametrize("shape", SHAPES)
 def test_sections_are_those_of_an_independent_slice(shape):
     mesh = SHAPES[shape].transformed(POSES[2][1], (0.4, -0.3, 0.0))
-    s, rows, _ = sections(mesh.vertices, mesh.faces, float(np.ptp(mesh.vertices[:, 2])) / 17.3, np.inf)
+    s, rows, _ = sections(
+        mesh.vertices, mesh.faces, float(np.ptp(mesh.vertices[:, 2])) / 17.3, np.inf
+    )
     for height, (area, u, v, along) in zip(s[1:-1], rows[1:-1], strict=True):
         there, centroid = naive.section(mesh, height)
         # trimesh joins points of a section that are 1e-8 apart
@@ -313,7 +350,7 @@ def test_flat_ends_are_counted_at_both():
     s, rows, _ = sections(box.vertices, box.faces, 0.025, np.inf)
     np.testing.assert_allclose(rows[:, 0], 4 * 0.4 * 0.3, rtol=1e-8)
     assert len(s) == 17
-    assert integrated(rows, s, "trapezoid")[-1, 0] == pytest.approx(box.volume, rel=1e-8)
+    assert integrate(rows, s, "trapezoid")[-1, 0] == pytest.approx(box.volume, rel=1e-8)
 
 
 @pytest.mark.parametrize(("rule", "order"), [("trapezoid", 2), ("simpson", 3)])
@@ -324,20 +361,34 @@ def test_the_rules_converge_with_their_order(rule, order):
     for step in (0.08, 0.04, 0.02, 0.01):
         found = submerge(cone, (0, 0, -0.63), method=Sections(step=step, rule=rule)).volume
         errors.append(abs(found - submerge(cone, (0, 0, -0.63)).volume))
-    assert np.log2(errors[0] / errors[-1]) / 3 == pytest.approx(order, abs=0.8 if rule == "simpson" else 0.1)
+    assert np.log2(errors[0] / errors[-1]) / 3 == pytest.approx(
+        order, abs=0.8 if rule == "simpson" else 0.1
+    )
     assert errors[-1] < 1e-4
 
 
 def test_the_iterations_are_the_sections_up_to_the_water():
-    packed = Sections(step=0.01).packed([CONVEX["box"]], [0], [0], Water())
+    packed = Sections(step=0.01).pack([CONVEX["box"]], [0], [0], Water())
     packed.submerge(np.array([[0.0, 0.0, 0.05]]), np.eye(3).reshape(1, 9), 0.0)
     # the box's bottom lies 0.15 m deep
     # each section of a box meets its 8 side triangles, but for those just at their corners
-    assert packed.counts == {"calls": 1, "sections": 16, "crossings": 128, "tabulated": 0, "look_ups": 0}
-    table = Sections(step=0.01, axis=(0, 0, 1)).packed([CONVEX["box"]], [0], [0], Water())
+    assert packed.counts == {
+        "calls": 1,
+        "sections": 16,
+        "crossings": 128,
+        "tabulated": 0,
+        "look_ups": 0,
+    }
+    table = Sections(step=0.01, axis=(0, 0, 1)).pack([CONVEX["box"]], [0], [0], Water())
     for _ in range(3):
         table.submerge(np.array([[0.0, 0.0, 0.05]]), np.eye(3).reshape(1, 9), 0.0)
-    assert table.counts == {"calls": 3, "sections": 0, "crossings": 0, "tabulated": 41, "look_ups": 3}
+    assert table.counts == {
+        "calls": 3,
+        "sections": 0,
+        "crossings": 0,
+        "tabulated": 41,
+        "look_ups": 3,
+    }
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -358,8 +409,12 @@ def test_an_axis_of_the_body_cuts_a_heeled_body_wrongly():
     assert wet.volume == pytest.approx(0.5 * ball.volume, rel=2e-3)
     assert wet.centroid == pytest.approx(naive.roll(heel) @ [0, 0, -3 / 8 * 0.5], abs=2e-3)
     # less than half, and the surface is taken at depth / cos(heel)
-    shallow = submerge(ball, (0, 0, 0.2), naive.roll(heel), method=Sections(axis=(0, 0, 1), step=1e-3))
-    assert shallow.volume == pytest.approx(submerge(ball, (0, 0, 0.2 / np.cos(heel))).volume, rel=1e-3)
+    shallow = submerge(
+        ball, (0, 0, 0.2), naive.roll(heel), method=Sections(axis=(0, 0, 1), step=1e-3)
+    )
+    assert shallow.volume == pytest.approx(
+        submerge(ball, (0, 0, 0.2 / np.cos(heel))).volume, rel=1e-3
+    )
 
 
 def test_small_hulls_are_not_lost_between_sections():
@@ -372,7 +427,9 @@ def test_small_hulls_are_not_lost_between_sections():
 
 def test_vertices_without_a_face_are_no_part_of_a_mesh():
     ball = CONVEX["sphere"]
-    littered = TriMesh(np.vstack([[[0.0, 0.0, 9.0]], ball.vertices, [[20.0, 0.0, -5.0]]]), ball.faces + 1)
+    littered = TriMesh(
+        np.vstack([[[0.0, 0.0, 9.0]], ball.vertices, [[20.0, 0.0, -5.0]]]), ball.faces + 1
+    )
     for method in ALL:
         clean, same = (submerge(mesh, *POSES[0], method=method) for mesh in (ball, littered))
         assert same.volume == pytest.approx(clean.volume, rel=1e-12)
@@ -383,7 +440,9 @@ def test_vertices_without_a_face_are_no_part_of_a_mesh():
 def test_an_axis_counts_by_its_direction_alone(axis):
     pose = POSES[2]
     expected = submerge(CONVEX["sphere"], *pose, method=Sections(axis=(0, 0, 1))).volume
-    assert submerge(CONVEX["sphere"], *pose, method=Sections(axis=axis)).volume == pytest.approx(expected, rel=1e-12)
+    assert submerge(CONVEX["sphere"], *pose, method=Sections(axis=axis)).volume == pytest.approx(
+        expected, rel=1e-12
+    )
 
 
 def test_on_a_wave_sections_see_a_level_surface_over_the_middle_of_each_hull():
@@ -391,7 +450,9 @@ def test_on_a_wave_sections_see_a_level_surface_over_the_middle_of_each_hull():
     barge, water = shapes.box((2.0, 0.3, 0.2)), Water(waves=RegularWave(0.3, wavelength=6.2))
     here = submerge(barge, (0.4, 0, -0.05), water=water, method=Sections()).volume
     level = float(water.elevation(0.4, 0.0, 0.0))
-    assert here == pytest.approx(submerge(barge, (0.4, 0, -0.05), water=Water(level=level)).volume, rel=1e-5)
+    assert here == pytest.approx(
+        submerge(barge, (0.4, 0, -0.05), water=Water(level=level)).volume, rel=1e-5
+    )
     assert here > 1.2 * submerge(barge, (0.4, 0, -0.05), water=water).volume
 
 
@@ -410,11 +471,17 @@ def test_an_axis_that_lies_level_is_wet_or_dry():
     ("make", "message"),
     [
         (lambda: ConvexHull(centroid="mean"), "centroid is 'mean'; possible: hull, vertices"),
-        (lambda: ConvexHull(resort_every=-1), "resort_every is -1; it must be a number of steps, or 0"),
+        (
+            lambda: ConvexHull(resort_every=-1),
+            "resort_every is -1; it must be a number of steps, or 0",
+        ),
         (lambda: ConvexHull(resort_every=2.5), "resort_every is 2.5"),
         (lambda: Sections(step=0.0), "step is 0.0; it must be a positive length"),
         (lambda: Sections(step=float("nan")), "step is nan"),
-        (lambda: Sections(axis=(0, 0, 0)), r"axis is \(0, 0, 0\); it must be three finite numbers, not all zero"),
+        (
+            lambda: Sections(axis=(0, 0, 0)),
+            r"axis is \(0, 0, 0\); it must be three finite numbers, not all zero",
+        ),
         (lambda: Sections(axis=(0, 1)), "axis is"),
         (lambda: Sections(axis="up"), "axis is 'up'"),
         (lambda: Sections(axis=((1, 2), 3, 4)), "axis is"),
@@ -422,9 +489,18 @@ def test_an_axis_that_lies_level_is_wet_or_dry():
         (lambda: ConvexHull(cut="no"), "cut is 'no'; it must be True or False"),
         (lambda: submerge(CONVEX["box"], method=ConvexHull), "is no method; possible are exact"),
         (lambda: Sections(rule="simpsons"), "did you mean 'simpson'"),
-        (lambda: submerge(CONVEX["box"], method="hull"), "unknown method 'hull'.*possible: convex_hull, exact, sections"),
-        (lambda: submerge(CONVEX["box"], method=3), "3 is no method; possible are exact, convex_hull, sections"),
-        (lambda: submerge(CONVEX["box"], method=Sections(step=1e-9)), "step is 1e-09 m on a mesh 1.08 m long"),
+        (
+            lambda: submerge(CONVEX["box"], method="hull"),
+            "unknown method 'hull'.*possible: convex_hull, exact, sections",
+        ),
+        (
+            lambda: submerge(CONVEX["box"], method=3),
+            "3 is no method; possible are exact, convex_hull, sections",
+        ),
+        (
+            lambda: submerge(CONVEX["box"], method=Sections(step=1e-9)),
+            "step is 1e-09 m on a mesh 1.08 m long",
+        ),
     ],
 )
 def test_what_makes_no_sense_is_told(make, message):
@@ -433,11 +509,15 @@ def test_what_makes_no_sense_is_told(make, message):
 
 
 @pytest.mark.parametrize("method", ALL, ids=repr)
-@pytest.mark.parametrize("position", [(np.nan, np.nan, np.nan), (0.0, 0.0, np.inf), (0.0, 0.0, -np.inf)])
+@pytest.mark.parametrize(
+    "position", [(np.nan, np.nan, np.nan), (0.0, 0.0, np.inf), (0.0, 0.0, -np.inf)]
+)
 def test_a_pose_that_left_the_finite_numbers_gives_no_number(method, position):
-    packed = method.packed([CONVEX["box"]], [0], [0], Water())
+    packed = method.pack([CONVEX["box"]], [0], [0], Water())
     assert np.isnan(packed.submerge(np.array([position]), np.eye(3).reshape(1, 9), 0.0)[0, 0])
-    assert packed.submerge(np.zeros((1, 3)) - [0, 0, 1.0], np.eye(3).reshape(1, 9), 0.01)[0, 0] > 0.0
+    assert (
+        packed.submerge(np.zeros((1, 3)) - [0, 0, 1.0], np.eye(3).reshape(1, 9), 0.01)[0, 0] > 0.0
+    )
 
 
 # in the engine ----------------------------------------------------------------------------------------
@@ -447,7 +527,12 @@ def test_a_pose_that_left_the_finite_numbers_gives_no_number(method, position):
 def auv():
     model = mujoco.MjModel.from_xml_path(str(catalog.models()["sauvc_auv"]))
     data = mujoco.MjData(model)
-    data.qpos[:7] = [0.4, -0.2, -0.05, *Rotation.from_euler("xyz", [0.3, -0.2, 0.5]).as_quat(scalar_first=True)]
+    data.qpos[:7] = [
+        0.4,
+        -0.2,
+        -0.05,
+        *Rotation.from_euler("xyz", [0.3, -0.2, 0.5]).as_quat(scalar_first=True),
+    ]
     data.qvel[:] = [0.1, -0.2, 0.05, 0.3, -0.1, 0.2]
     mujoco.mj_forward(model, data)
     return model, data
@@ -459,7 +544,9 @@ def test_forces_of_each_mesh_and_their_resultant_move_a_body_alike(auv, method):
     water = Water(waves=RegularWave(0.05, frequency=0.5))
     loads = Buoyancy(model, water, drag=None, method=method).evaluate(data)
     each, one = np.zeros((2, model.nv))
-    for body, centroid, force in zip([1] * len(loads.names), loads.hull.centroid, loads.hull.force, strict=True):
+    for body, centroid, force in zip(
+        [1] * len(loads.names), loads.hull.centroid, loads.hull.force, strict=True
+    ):
         if force.any():
             mujoco.mj_applyFT(model, data, force, np.zeros(3), centroid, body, each)
     wet = loads.hull.volume > 0.0
@@ -479,7 +566,10 @@ def test_an_axis_of_the_body_stands_in_the_body_whatever_frames_its_geoms_have()
     data = mujoco.MjData(model)
     data.qpos[2] = -0.05
     mujoco.mj_forward(model, data)
-    exact, fixed = (Buoyancy(model, method=m).evaluate(data).hull.volume for m in ("exact", Sections(axis=(0, 0, 1))))
+    exact, fixed = (
+        Buoyancy(model, method=m).evaluate(data).hull.volume
+        for m in ("exact", Sections(axis=(0, 0, 1)))
+    )
     np.testing.assert_allclose(fixed, exact, rtol=0.03, atol=1e-6)
 
 
@@ -490,7 +580,12 @@ def test_looking_does_not_change_a_run_and_two_data_do_not_change_each_other():
         buoyancy = Buoyancy(model, method="convex_hull")
         datas = [mujoco.MjData(model) for _ in tilts]
         for data, tilt in zip(datas, tilts, strict=True):
-            data.qpos[:7] = [0.0, 0.0, 0.1, *Rotation.from_euler("x", tilt).as_quat(scalar_first=True)]
+            data.qpos[:7] = [
+                0.0,
+                0.0,
+                0.1,
+                *Rotation.from_euler("x", tilt).as_quat(scalar_first=True),
+            ]
         with buoyancy.installed():
             for step in range(60):
                 for data in datas:
@@ -519,7 +614,9 @@ def test_rk4_ages_an_order_by_two_steps_a_timestep():
 
 @pytest.mark.parametrize("method", [ConvexHull(), Sections(), Sections(axis=(0, 0, 1))], ids=repr)
 def test_a_run_that_diverges_is_told_by_every_method(method):
-    scene = dataclasses.replace(read_scene(catalog.scenes()["hourglass_drop_still"]), method=method, duration=0.1)
+    scene = dataclasses.replace(
+        read_scene(catalog.scenes()["hourglass_drop_still"]), method=method, duration=0.1
+    )
     simulation = Simulation(scene)
     simulation.data.qvel[:] = 1e9
     with pytest.raises(DivergenceError, match="diverged"):
@@ -555,7 +652,9 @@ def test_the_exact_method_is_the_default_everywhere():
 def test_a_scene_names_its_method_and_its_options():
     path = catalog.scenes()["auv_waves"]
     assert read_scene(path, ["method=sections"]).method == Sections()
-    chosen = read_scene(path, ['method={kind="convex_hull"}', "method.cut=true", "method.resort_every=3"]).method
+    chosen = read_scene(
+        path, ['method={kind="convex_hull"}', "method.cut=true", "method.resort_every=3"]
+    ).method
     assert chosen == ConvexHull(cut=True, resort_every=3)
     axis = read_scene(path, ["method={kind='sections', axis=[0, 0, 1], step=0.02}"]).method
     assert axis == Sections(step=0.02, axis=(0.0, 0.0, 1.0))
@@ -565,8 +664,14 @@ def test_a_scene_names_its_method_and_its_options():
         (["method=3"], "method is 3; needed is a table"),
         (["method={kind='sections', cut=true}"], "unknown key 'cut'; possible: axis, rule, step"),
         (["method={kind='convex_hull', cut=1}"], "cut is 1; needed is true or false"),
-        (["method={kind='convex_hull', resort_every=1.5}"], "resort_every is 1.5; needed is a whole number"),
-        (["method={kind='sections', rule='midpoint'}"], "rule is 'midpoint'; possible: simpson, trapezoid"),
+        (
+            ["method={kind='convex_hull', resort_every=1.5}"],
+            "resort_every is 1.5; needed is a whole number",
+        ),
+        (
+            ["method={kind='sections', rule='midpoint'}"],
+            "rule is 'midpoint'; possible: simpson, trapezoid",
+        ),
     ):
         with pytest.raises(SceneError, match=message):
             read_scene(path, settings)

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 from buoyancy_mj import Buoyancy, Simulation, Water, hydrostatics, read_scene, submerge
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.scenes import catalog
 
 MODELS = catalog.models()
@@ -24,7 +24,12 @@ def test_a_model_folder_keeps_the_contract(name):
     folder = MODELS[name].parent
     # a vehicle of primitives has no assets
     assets = {"assets"} if loaded(name).nmesh else set()
-    assert {path.name for path in folder.iterdir()} == {f"{name}.xml", "scene.xml", "README.md", "LICENSE"} | assets
+    assert {path.name for path in folder.iterdir()} == {
+        f"{name}.xml",
+        "scene.xml",
+        "README.md",
+        "LICENSE",
+    } | assets
     assert "where each mass and dimension comes from" in (folder / "README.md").read_text().lower()
     assert len(catalog.summary(MODELS[name])) > 20
 
@@ -62,13 +67,19 @@ def test_every_keyframe_can_be_run(name):
 
 
 def test_the_meshes_are_what_the_script_makes():
-    spec = importlib.util.spec_from_file_location("make_models", Path(__file__).parent.parent / "scripts" / "make_models.py")
+    spec = importlib.util.spec_from_file_location(
+        "make_models", Path(__file__).parent.parent / "scripts" / "make_models.py"
+    )
     script = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(script)
     made = {
         "hourglass/assets/hourglass": script.hourglass(),
-        "sauvc_auv/assets/pressure_hull": script.capped_tube(script.HULL_RADIUS, script.HULL_CYLINDER, script.HULL_DOME),
-        "sauvc_auv/assets/battery_pod": script.capped_tube(script.POD_RADIUS, script.POD_CYLINDER, script.POD_DOME),
+        "sauvc_auv/assets/pressure_hull": script.capped_tube(
+            script.HULL_RADIUS, script.HULL_CYLINDER, script.HULL_DOME
+        ),
+        "sauvc_auv/assets/battery_pod": script.capped_tube(
+            script.POD_RADIUS, script.POD_CYLINDER, script.POD_DOME
+        ),
         "sauvc_auv/assets/frame": script.frame(),
         "sauvc_auv/assets/thruster": script.thruster(),
     }
@@ -94,14 +105,14 @@ def test_the_hourglass_has_the_volume_of_its_two_frusta(draft):
 
     whole = frustum(half)
     volume = frustum(draft) if draft <= half else 2.0 * whole - frustum(2.0 * half - draft)
-    mesh = displacing_hulls(loaded("hourglass"))[0].mesh
+    mesh = find_hulls(loaded("hourglass"))[0].mesh
     # a circle of 96 facets has 0.9993 of its area
     facets = 96.0 / (2.0 * np.pi) * np.sin(2.0 * np.pi / 96.0)
     assert submerge(mesh, (0, 0, half - draft)).volume == pytest.approx(facets * volume, rel=1e-5)
 
 
 def test_the_hourglass_has_a_neck_that_its_convex_hull_fills():
-    mesh = displacing_hulls(loaded("hourglass"))[0].mesh
+    mesh = find_hulls(loaded("hourglass"))[0].mesh
     hull = trimesh.convex.convex_hull(mesh.vertices)
     assert hull.volume / mesh.volume > 1.8
 
@@ -122,7 +133,10 @@ def test_the_auv_keeps_the_rules_of_sauvc():
     # bonus of the SAUVC rulebook 2026 v6.1.0: below 70 x 50 x 50 cm and 42 kg
     model, data, buoyancy, _ = auv_under_water()
     points = np.concatenate(
-        [h.mesh.vertices @ data.geom_xmat[h.geom].reshape(3, 3).T + data.geom_xpos[h.geom] for h in buoyancy.hulls]
+        [
+            h.mesh.vertices @ data.geom_xmat[h.geom].reshape(3, 3).T + data.geom_xpos[h.geom]
+            for h in buoyancy.hulls
+        ]
     )
     assert (np.ptp(points, axis=0) < [0.7, 0.5, 0.5]).all()
     assert model.body_mass.sum() == pytest.approx(24.0, abs=0.5)
@@ -139,7 +153,7 @@ def test_the_auv_is_slightly_buoyant_and_stable():
 
 def test_no_two_parts_of_the_auv_overlap():
     # BuoyancyWarning is an error here
-    assert len(displacing_hulls(loaded("sauvc_auv"))) == 15
+    assert len(find_hulls(loaded("sauvc_auv"))) == 15
 
 
 def test_the_thrusters_span_all_six_directions():
@@ -184,18 +198,22 @@ def test_the_auv_senses_its_depth_and_attitude():
 def test_the_bluerov2_heavy_has_its_published_totals():
     # von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898
     model = loaded("bluerov2_heavy")
-    hulls = displacing_hulls(model)
-    shares = np.array([hull.displacement for hull in hulls])
+    hulls = find_hulls(model)
+    shares = np.array([hull.displaced_volume for hull in hulls])
     assert shares.sum() == pytest.approx(0.0134, rel=1e-6)
-    assert shares @ [hull.mesh_in_body.centroid for hull in hulls] / shares.sum() == pytest.approx([0, 0, 0], abs=1e-7)
+    assert shares @ [hull.mesh_in_body.centroid for hull in hulls] / shares.sum() == pytest.approx(
+        [0, 0, 0], abs=1e-7
+    )
     assert model.body_mass[1] == 13.5
     assert model.body_ipos[1].tolist() == [0, 0, -0.01]
-    assert hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0]).natural_periods([6.36, 7.12, 18.68, 0.189, 0.135, 0.222])[
-        1:
-    ] == pytest.approx([3.672, 3.311], rel=1e-3)
+    assert hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0]).natural_periods(
+        [6.36, 7.12, 18.68, 0.189, 0.135, 0.222]
+    )[1:] == pytest.approx([3.672, 3.311], rel=1e-3)
 
 
-@pytest.mark.parametrize(("density", "push", "axis", "speed"), [(1000, 0, 2, -0.0259), (1025, 0, 2, 0.0534)])
+@pytest.mark.parametrize(
+    ("density", "push", "axis", "speed"), [(1000, 0, 2, -0.0259), (1025, 0, 2, 0.0534)]
+)
 def test_the_bluerov2_heavy_drifts_at_its_terminal_speed(density, push, axis, speed):
     model = loaded("bluerov2_heavy")
     data = mujoco.MjData(model)

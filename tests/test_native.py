@@ -15,7 +15,10 @@ from buoyancy_mj.engine import layout, native
 from buoyancy_mj.kernels import wrenches
 from buoyancy_mj.kernels.entries import passive as kernel
 
-SEA = Water(density=1025.0, waves=[RegularWave(0.1, wavelength=6.0), RegularWave(0.03, wavelength=2.0, direction=1.0)])
+SEA = Water(
+    density=1025.0,
+    waves=[RegularWave(0.1, wavelength=6.0), RegularWave(0.03, wavelength=2.0, direction=1.0)],
+)
 RAFT = """
 <mujoco>
   <option timestep="0.004" integrator="{integrator}"/>
@@ -62,7 +65,9 @@ def after(count, compiled, integrator="implicitfast", push=None, **options):
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
 def test_it_moves_bodies_as_the_python_callback_does(integrator):
-    assert after(200, True, integrator) == pytest.approx(after(200, False, integrator), rel=0, abs=1e-12)
+    assert after(200, True, integrator) == pytest.approx(
+        after(200, False, integrator), rel=0, abs=1e-12
+    )
 
 
 @pytest.mark.parametrize("method", ["sections", "convex_hull"])
@@ -99,7 +104,9 @@ def test_a_wrench_becomes_the_generalized_force_that_the_engine_makes_of_it():
         model.body_dofadr, model.dof_parentid, data.cdof, ours,
     )  # fmt: skip
     for body in bodies:
-        mujoco.mj_applyFT(model, data, wrench[body, :3], wrench[body, 3:], data.xipos[body], body, theirs)
+        mujoco.mj_applyFT(
+            model, data, wrench[body, :3], wrench[body, 3:], data.xipos[body], body, theirs
+        )
     assert ours == pytest.approx(theirs, rel=1e-12, abs=1e-12)
 
 
@@ -131,7 +138,8 @@ def test_loads_of_data_that_nothing_acted_on_are_refused():
     model, data = raft()
     buoyancy = Buoyancy(model)
     with pytest.raises(
-        EngineError, match="this water has not acted on these data at their time, 0 s; step them while it acts"
+        EngineError,
+        match="this water has not acted on these data at their time, 0 s; step them while it acts",
     ):
         buoyancy.loads(data)
     with buoyancy.installed():
@@ -193,7 +201,9 @@ def test_beside_a_callback_in_python_it_acts_in_python():
     mujoco.set_mjcb_passive(lambda m, d: seen.append(d))
     try:
         buoyancy = Buoyancy(model)
-        with pytest.raises(EngineError, match="cannot act as compiled code: a callback in Python is installed"):  # noqa: SIM117
+        with pytest.raises(  # noqa: SIM117
+            EngineError, match="cannot act as compiled code: a callback in Python is installed"
+        ):
             with buoyancy.installed(native=True):
                 pass
         with buoyancy.installed():
@@ -280,12 +290,16 @@ def test_a_pose_that_is_no_number_gives_loads_that_are_none_and_the_engines_own_
         data.qpos[0] = np.nan
         mujoco.mj_step(model, data)
     assert data.warning[mujoco.mjtWarning.mjWARN_BADQPOS].number == 1
-    assert np.isnan(buoyancy.loads(data).body.force[1]).all() or np.isnan(buoyancy.loads(data).body.volume[1])
+    assert np.isnan(buoyancy.loads(data).body.force[1]).all() or np.isnan(
+        buoyancy.loads(data).body.volume[1]
+    )
 
 
 @settings(max_examples=60, deadline=None)
 @given(
-    numbers=st.lists(st.floats(allow_nan=True, allow_infinity=True, width=64), min_size=14, max_size=14),
+    numbers=st.lists(
+        st.floats(allow_nan=True, allow_infinity=True, width=64), min_size=14, max_size=14
+    ),
     time=st.floats(allow_nan=True, allow_infinity=True),
 )
 def test_no_pose_and_no_time_makes_it_hang_or_read_elsewhere(numbers, time):
@@ -297,7 +311,9 @@ def test_no_pose_and_no_time_makes_it_hang_or_read_elsewhere(numbers, time):
         flat[: len(numbers)] = numbers[: flat.size]
     data.time = time
     record = buoyancy.native.record(model._address)
-    function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 4)(native._compiled(kernel.act).address)
+    function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 4)(
+        native._compiled(kernel.act).address
+    )
     assert function(model._address, data._address, buoyancy.native.address, record.address) == 0
     record.ids[kernel.Id.alive] = 0
     assert not (record.results[:, 0] > buoyancy.packed.volumes * (1.0 + 1e-9)).any()
@@ -314,7 +330,9 @@ def test_gravity_that_is_turned_sideways_while_it_runs_is_an_error_of_the_engine
     model, data = raft()
     with Buoyancy(model).installed(native=True):
         model.opt.gravity[0] = 1.0
-        with pytest.raises(mujoco.FatalError, match=r"gravity is not along -z, and water needs it so: set <option"):
+        with pytest.raises(
+            mujoco.FatalError, match=r"gravity is not along -z, and water needs it so: set <option"
+        ):
             mujoco.mj_forward(model, data)
         model.opt.gravity[0] = 0.0
         mujoco.mj_forward(model, data)
@@ -323,7 +341,11 @@ def test_gravity_that_is_turned_sideways_while_it_runs_is_an_error_of_the_engine
 def test_masses_timestep_and_gravity_are_read_in_each_pass():
     def end(change_after_construction):
         model, data = raft("Euler")
-        buoyancy = None if not change_after_construction else Buoyancy(model, SEA, drag=Drag(coefficient=100.0))
+        buoyancy = (
+            None
+            if not change_after_construction
+            else Buoyancy(model, SEA, drag=Drag(coefficient=100.0))
+        )
         model.body_mass[:] *= 0.5
         model.body_inertia[:] *= 0.5
         model.opt.timestep = 0.01
@@ -345,29 +367,37 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
 
 def test_the_engine_keeps_its_numbers_where_they_are_looked_for():
     layout.verify(kernel.OFFSETS)
-    assert native.available() is None
+    assert native.require_known_layout() is None
 
 
 def test_an_engine_that_keeps_them_elsewhere_is_refused_and_served_in_python(monkeypatch):
     right = layout.offset
-    native.available.cache_clear()
+    native.require_known_layout.cache_clear()
     monkeypatch.setattr(layout, "offset", lambda path: right(path) + 8 * (path == "mjData.cdof"))
     try:
         model, data = raft()
         buoyancy = Buoyancy(model)
-        with pytest.raises(EngineError, match=r"MuJoCo 4.* does not keep mjData.cdof at byte \d+, as it says itself"):
-            native.available()
+        with pytest.raises(
+            EngineError,
+            match=r"MuJoCo 4.* does not keep mjData.cdof at byte \d+, as it says itself",
+        ):
+            native.require_known_layout()
         with buoyancy.installed():
             assert not hasattr(mujoco.get_mjcb_passive(), "argtypes")
             mujoco.mj_forward(model, data)
-        with pytest.raises(EngineError, match="cannot act as compiled code"), buoyancy.installed(native=True):
+        with (
+            pytest.raises(EngineError, match="cannot act as compiled code"),
+            buoyancy.installed(native=True),
+        ):
             pass
     finally:
-        native.available.cache_clear()
+        native.require_known_layout.cache_clear()
 
 
 def test_fields_and_functions_that_the_engine_lacks_are_told():
-    with pytest.raises(EngineError, match=r"has no mjData.wetness; the water then acts through Python alone"):
+    with pytest.raises(
+        EngineError, match=r"has no mjData.wetness; the water then acts through Python alone"
+    ):
         layout.offset("mjData.wetness")
     with pytest.raises(EngineError, match=r"has no function mj_swim"):
         layout.symbol("mj_swim")
@@ -375,13 +405,18 @@ def test_fields_and_functions_that_the_engine_lacks_are_told():
 
 def test_where_passive_forces_are_skipped_it_is_lent_as_a_control_callback():
     model, data = raft()
-    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SPRING) | int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
+    model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_SPRING) | int(
+        mujoco.mjtDisableBit.mjDSBL_DAMPER
+    )
     buoyancy = Buoyancy(model)
     with buoyancy.installed():
         assert mujoco.get_mjcb_control() is not None
         mujoco.mj_forward(model, data)
     assert buoyancy.loads(data).total.force[2] > 0.0
-    with pytest.raises(EngineError, match="disables springs and dampers"), buoyancy.installed(native=True):
+    with (
+        pytest.raises(EngineError, match="disables springs and dampers"),
+        buoyancy.installed(native=True),
+    ):
         pass
     model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
     with pytest.raises(ModelError, match="disables actuation"), buoyancy.installed():

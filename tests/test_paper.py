@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from buoyancy_mj import BuoyancyError, Exact, Sections, Start
 from buoyancy_mj.cli import app
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.paper import report, runs, solids, statics
 from buoyancy_mj.paper.studies import STUDIES
 from buoyancy_mj.scenes import catalog
@@ -34,16 +34,20 @@ def table(path):
 
 
 def test_the_hourglass_is_the_one_that_ships_and_has_its_closed_form():
-    (hull,) = displacing_hulls(solids.model_of("hourglass"), None)
+    (hull,) = find_hulls(solids.model_of("hourglass"), None)
     mesh = solids.hourglass()
     assert hull.mesh.volume == pytest.approx(mesh.volume, rel=1e-6)
     assert len(hull.mesh.vertices) == len(mesh.vertices)
-    assert float(solids.hourglass_volume(0.4, solids.SECTIONS)) == pytest.approx(mesh.volume, rel=1e-12)
+    assert float(solids.hourglass_volume(0.4, solids.SECTIONS)) == pytest.approx(
+        mesh.volume, rel=1e-12
+    )
     for height in (0.05, 0.2, 0.31, 0.4):
         area, _ = quad(solids.hourglass_area, 0.0, height, points=[0.2])
         assert float(solids.hourglass_volume(height)) == pytest.approx(area, rel=1e-10)
     # with tips instead of a neck it would be the two cones of V = (pi R^2 H / 3) (1 - (1 - z / H)^3)
-    assert float(solids.hourglass_volume(0.4)) == pytest.approx(2 * np.pi * 0.2 / 3 * (0.15**2 + 0.15 * 0.04 + 0.04**2))
+    assert float(solids.hourglass_volume(0.4)) == pytest.approx(
+        2 * np.pi * 0.2 / 3 * (0.15**2 + 0.15 * 0.04 + 0.04**2)
+    )
 
 
 @pytest.mark.parametrize("name", solids.FAMILIES)
@@ -73,7 +77,9 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
     rows = report.reproduce(tmp_path, quick=True, begin=lambda study: begun.append(study.name))
     assert begun == list(STUDIES)
     for name, study in STUDIES.items():
-        assert study.draw is None or (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
+        assert study.draw is None or (tmp_path / f"{name}.png").read_bytes().startswith(
+            b"\x89PNG"
+        ), name
     for path in tmp_path.glob("*.csv"):
         header, lines = table(path)
         assert lines, path
@@ -108,13 +114,17 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
     values = dict(zip(header, np.array(lines, float).T, strict=True))
     assert np.abs(values["exact, error [% of the whole]"]).max() < 1e-5
     assert np.abs(values["sections, error [% of the whole]"]).max() < 0.02
-    assert values["convex hull with cuts, error [% of the whole]"][-1] == pytest.approx(124.25, abs=0.01)
+    assert values["convex hull with cuts, error [% of the whole]"][-1] == pytest.approx(
+        124.25, abs=0.01
+    )
 
 
 def test_linear_damping_acts_on_velocity_relative_to_the_world():
     # a body far above the water falls as v = g / d (1 - exp(-d t)), whatever its mass
     scene = runs.scene_of("hourglass_drop_still")
-    scene = dataclasses.replace(scene, start=Start(position=(0, 0, 50.0)), duration=1.0, timestep=1e-3, drag=None)
+    scene = dataclasses.replace(
+        scene, start=Start(position=(0, 0, 50.0)), duration=1.0, timestep=1e-3, drag=None
+    )
     heights = np.array([m.height for m in runs.run(scene, Exact(), mass=3.0, rate=4.0)])
     times = 1e-3 * np.arange(len(heights))
     fall = 9.81 / 4.0 * (times - (1.0 - np.exp(-4.0 * times)) / 4.0)
@@ -126,7 +136,9 @@ def test_a_run_s_draft_is_that_of_its_lowest_point():
     scene = dataclasses.replace(scene, start=Start(position=(0, 0, 0.1)), duration=0.02)
     first, *_ = runs.run(scene, Exact())
     assert first.draft == pytest.approx(0.1, abs=1e-6)
-    assert first.force == pytest.approx(9810.0 * float(solids.hourglass_volume(0.1, solids.SECTIONS)), rel=1e-5)
+    assert first.force == pytest.approx(
+        9810.0 * float(solids.hourglass_volume(0.1, solids.SECTIONS)), rel=1e-5
+    )
 
 
 def test_a_fixed_axis_errs_by_what_the_paper_says_and_a_vertical_one_does_not():
@@ -143,7 +155,8 @@ def test_a_fixed_axis_errs_by_what_the_paper_says_and_a_vertical_one_does_not():
 
 def test_one_study_alone_writes_its_own_and_no_page(tmp_path):
     result = CliRunner().invoke(
-        app, ["paper", "--quick", "--only", "approximations", "--out", str(tmp_path / "new" / "folder")]
+        app,
+        ["paper", "--quick", "--only", "approximations", "--out", str(tmp_path / "new" / "folder")],
     )
     assert result.exit_code == 0, result.output
     assert "up to 15 %" in result.output
@@ -169,7 +182,9 @@ def test_the_committed_page_is_a_whole_one_with_all_its_figures():
     _, rows = table(PAGE / "claims.csv")
     # written by what is here, but for the machine
     own = report.page(report.HEADER, rows, quick=False).splitlines()
-    assert [line for line in page.splitlines() if "cores" not in line] == [line for line in own if "cores" not in line]
+    assert [line for line in page.splitlines() if "cores" not in line] == [
+        line for line in own if "cores" not in line
+    ]
     for *_, holds, command in rows:
         assert holds in ("yes", "no", "in part")
         assert command.removeprefix("buoyancy-mj paper --only ") in STUDIES
@@ -181,7 +196,11 @@ def test_the_committed_page_is_a_whole_one_with_all_its_figures():
 
 def test_without_matplotlib_the_mend_is_told(tmp_path):
     code = "import sys; sys.modules['matplotlib'] = None; from buoyancy_mj.cli import app; app(['paper'])"
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 1
-    assert "need matplotlib, which is not installed: pip install 'buoyancy_mj[paper]'" in done.stderr
+    assert (
+        "need matplotlib, which is not installed: pip install 'buoyancy_mj[paper]'" in done.stderr
+    )
     assert "Traceback" not in done.stderr

@@ -38,9 +38,13 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.engine import plugin
 from buoyancy_mj.engine.callbacks import PLUGIN
-from buoyancy_mj.settings.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.settings.settings import Settings, parse_plugin_config, write_plugin_config
 
-SEA = Water(density=1025.0, level=0.1, waves=[RegularWave(0.1, wavelength=6.0, direction=0.3), LevelOscillation(0.05, 0.5)])
+SEA = Water(
+    density=1025.0,
+    level=0.1,
+    waves=[RegularWave(0.1, wavelength=6.0, direction=0.3), LevelOscillation(0.05, 0.5)],
+)
 PLAIN = """<mujoco><option timestep="0.004"/><worldbody>
   <body name="one"><freejoint/><geom type="box" size=".3 .2 .1" mass="12"/></body>
   <body name="two" pos="0 3 0"><freejoint/><geom size=".2" mass="10"/>
@@ -119,7 +123,8 @@ def test_bodies_join_the_instance_they_name_and_take_along_what_is_welded_to_the
 
 def test_several_instances_have_water_of_their_own():
     model = compiled(
-        sea("salt", density=2000, drag="false") + sea("oil", density=900, drag="false"), two='<plugin instance="oil"/>'
+        sea("salt", density=2000, drag="false") + sea("oil", density=900, drag="false"),
+        two='<plugin instance="oil"/>',
     )
     data = mujoco.MjData(model)
     data.qpos[[2, 9]] = -2.0
@@ -144,7 +149,9 @@ def test_actuation_may_be_disabled():
 
 
 def test_a_second_water_by_callback_is_refused():
-    with pytest.raises(ModelError, match=r"brings its own water, as the plugin 'buoyancy_mj.water', and a callback"):  # noqa: SIM117
+    with pytest.raises(  # noqa: SIM117
+        ModelError, match=r"brings its own water, as the plugin 'buoyancy_mj.water', and a callback"
+    ):
         with Buoyancy(with_water()).installed():
             pass
 
@@ -166,13 +173,25 @@ def test_the_water_of_an_unknown_instance_is_told():
         ({"density": "-1"}, "density is -1.0; it must be above 0"),
         ({"level": "nan"}, "level is nan"),
         ({"current": "1 2"}, r"current is \[1, 2\]; needed is a list of 3 numbers"),
-        ({"waves": "huge amplitude=1"}, "unknown kind 'huge'; possible: jonswap, level, pierson-moskowitz, regular"),
-        ({"waves": "regular amplitude=1"}, "a regular wave got none; give exactly one of frequency"),
-        ({"waves": "regular amplitude=1 frequency"}, "key=value pairs between blanks, not 'frequency'"),
+        (
+            {"waves": "huge amplitude=1"},
+            "unknown kind 'huge'; possible: jonswap, level, pierson-moskowitz, regular",
+        ),
+        (
+            {"waves": "regular amplitude=1"},
+            "a regular wave got none; give exactly one of frequency",
+        ),
+        (
+            {"waves": "regular amplitude=1 frequency"},
+            "key=value pairs between blanks, not 'frequency'",
+        ),
         ({"waves": "regular height=1 frequency=1"}, "unknown key 'height'"),
         ({"method": "exat"}, "unknown kind 'exat'; did you mean 'exact'"),
         ({"method": "sections rule=guess"}, "rule is 'guess'"),
-        ({"drag": "coefficient=-2"}, "coefficient is -2.0; it must be a finite number of at least 0"),
+        (
+            {"drag": "coefficient=-2"},
+            "coefficient is -2.0; it must be a finite number of at least 0",
+        ),
         ({"drag": "much"}, "drag is 'much'; needed is a table"),
         ({"geoms": "keel*"}, r"no moving geom matches 'keel\*'; possible: .*hull"),
         ({"salt": "1"}, "unrecognized attribute 'plugin:salt'"),
@@ -184,7 +203,9 @@ def test_bad_configuration_is_a_compile_error_that_names_the_key(config, told):
 
 
 def test_a_model_whose_passive_forces_are_skipped_is_a_compile_error():
-    with pytest.raises(ValueError, match="disables springs and dampers, and MuJoCo then skips the passive forces"):
+    with pytest.raises(
+        ValueError, match="disables springs and dampers, and MuJoCo then skips the passive forces"
+    ):
         compiled(sea(), option='<flag spring="disable" damper="disable"/>')
 
 
@@ -240,10 +261,12 @@ METHOD = st.sampled_from(
     drag=st.sampled_from([None, Drag(), Drag(coefficient=0.7)]),
     geoms=st.sampled_from([None, ("hull*", "group:2")]),
 )
-def test_what_is_written_into_a_model_is_read_back_to_the_last_bit(waves, density, level, current, method, drag, geoms):
+def test_what_is_written_into_a_model_is_read_back_to_the_last_bit(
+    waves, density, level, current, method, drag, geoms
+):
     water = Water(density=density, level=level, waves=waves, current=current)
     written = Settings(water=water, method=method, drag=drag, geoms=geoms)
-    read = settings_from_texts(texts_from_settings(written), "here")
+    read = parse_plugin_config(write_plugin_config(written), "here")
     assert np.array_equal(read.water.rows, water.rows)
     assert dataclasses.replace(read, water=water) == written
     assert (read.water.density, read.water.level, read.water.current) == (density, level, current)
@@ -257,13 +280,20 @@ def test_waves_and_methods_that_a_model_cannot_hold_are_refused():
         pass
 
     with pytest.raises(
-        WaterError, match="cannot be written into a model; possible are regular, jonswap, pierson-moskowitz, level"
+        WaterError,
+        match="cannot be written into a model; possible are regular, jonswap, pierson-moskowitz, level",
     ):
         with_water(Water(waves=Swell()))
-    with pytest.raises(MethodError, match="cannot be written into a model; possible are exact, convex_hull, sections"):
+    with pytest.raises(
+        MethodError,
+        match="cannot be written into a model; possible are exact, convex_hull, sections",
+    ):
         with_water(method=Guess())
     spec = mujoco.MjSpec.from_string(mjcf(sea()))
-    with pytest.raises(ModelError, match=r"already has a plugin instance 'sea'; give the water another name \(instance=\)"):
+    with pytest.raises(
+        ModelError,
+        match=r"already has a plugin instance 'sea'; give the water another name \(instance=\)",
+    ):
         add_water(spec)
 
 
@@ -279,16 +309,22 @@ def test_a_saved_model_keeps_its_water(tmp_path):
     path.write_text(spec.to_xml())
     assert np.array_equal(stepped(mujoco.MjModel.from_xml_path(str(path))).qpos, end)
     mujoco.mj_saveModel(model, str(tmp_path / "floating.mjb"))
-    assert np.array_equal(stepped(mujoco.MjModel.from_binary_path(str(tmp_path / "floating.mjb"))).qpos, end)
+    assert np.array_equal(
+        stepped(mujoco.MjModel.from_binary_path(str(tmp_path / "floating.mjb"))).qpos, end
+    )
     mujoco.mj_saveLastXML(str(tmp_path / "last.xml"), mujoco.MjModel.from_xml_path(str(path)))
-    assert np.array_equal(stepped(mujoco.MjModel.from_xml_path(str(tmp_path / "last.xml"))).qpos, end)
+    assert np.array_equal(
+        stepped(mujoco.MjModel.from_xml_path(str(tmp_path / "last.xml"))).qpos, end
+    )
 
 
 def test_without_this_package_mujoco_says_what_is_missing(tmp_path):
     path = tmp_path / "floating.xml"
     path.write_text(mjcf(sea()))
     said = subprocess.run(
-        [sys.executable, "-c", f"import mujoco; mujoco.MjModel.from_xml_path({str(path)!r})"], capture_output=True, text=True
+        [sys.executable, "-c", f"import mujoco; mujoco.MjModel.from_xml_path({str(path)!r})"],
+        capture_output=True,
+        text=True,
     )
     assert "buoyancy_mj.water" in said.stderr
     assert said.returncode == 1
@@ -432,7 +468,9 @@ def test_a_rollout_moves_as_single_simulations():
         mujoco.mj_getState(model, data, start, spec)
     single = [alone(model, height) for height in HEIGHTS]
     for threads in (1, 2):
-        states, _ = rollout.rollout(model, [mujoco.MjData(model) for _ in range(threads)], starts, nstep=60)
+        states, _ = rollout.rollout(
+            model, [mujoco.MjData(model) for _ in range(threads)], starts, nstep=60
+        )
         assert np.array_equal(states[:, -1, 1 : 1 + model.nq], single)
 
 
@@ -472,7 +510,9 @@ def test_records_of_freed_data_serve_again_and_those_in_use_stay():
     forces = [water_in(model).loads(data).xfrc for data in kept]
     for _ in range(200):
         mujoco.MjData(model)
-    assert all(np.array_equal(water_in(model).loads(d).xfrc, f) for d, f in zip(kept, forces, strict=True))
+    assert all(
+        np.array_equal(water_in(model).loads(d).xfrc, f) for d, f in zip(kept, forces, strict=True)
+    )
 
 
 def test_waters_that_no_data_use_are_forgotten_in_the_end():
@@ -542,7 +582,9 @@ def test_a_scene_has_its_water_in_the_model(tmp_path):
 
 def test_the_scenes_water_takes_the_place_of_the_vehicles_own(tmp_path):
     text = mjcf(sea("own", density=5000), one='<plugin instance="own"/>')
-    with pytest.warns(BuoyancyWarning, match="the water 'own' of the model gives way to the scene's"):
+    with pytest.warns(
+        BuoyancyWarning, match="the water 'own' of the model gives way to the scene's"
+    ):
         simulation = Simulation(scene_of(tmp_path, text, water=Water(density=1234.0)))
     assert names(simulation.model) == ["sea"]
     assert water_in(simulation.model).water.density == 1234.0
@@ -550,7 +592,9 @@ def test_the_scenes_water_takes_the_place_of_the_vehicles_own(tmp_path):
 
 
 def test_a_scene_runs_where_passive_forces_are_skipped(tmp_path):
-    text = PLAIN.replace('<option timestep="0.004"/>', '<option><flag spring="disable" damper="disable"/></option>')
+    text = PLAIN.replace(
+        '<option timestep="0.004"/>', '<option><flag spring="disable" damper="disable"/></option>'
+    )
     simulation = Simulation(scene_of(tmp_path, text))
     assert names(simulation.model) == []
     assert list(simulation.frames())[-1].loads.total.force[2] > 0.0

@@ -8,7 +8,16 @@ import pytest
 import trimesh
 from scipy.special import j1
 
-from buoyancy_mj import Buoyancy, LevelOscillation, MethodError, RegularWave, TriMesh, Water, add_water, water_in
+from buoyancy_mj import (
+    Buoyancy,
+    LevelOscillation,
+    MethodError,
+    RegularWave,
+    TriMesh,
+    Water,
+    add_water,
+    water_in,
+)
 from buoyancy_mj.kernels.waves import head
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes.scene import scene_from_table
@@ -37,7 +46,12 @@ def heads(water, points, time, dynamic):
 
 @pytest.mark.parametrize("depth", [math.inf, 3.0])
 def test_pressure_is_zero_on_the_surface_and_the_still_waters_far_below_deep_waves(depth):
-    water = Water(waves=[RegularWave(0.3, wavelength=7.0, depth=depth), RegularWave(0.1, wavelength=3.0, direction=1.0)])
+    water = Water(
+        waves=[
+            RegularWave(0.3, wavelength=7.0, depth=depth),
+            RegularWave(0.1, wavelength=3.0, direction=1.0),
+        ]
+    )
     for x, y, t in ((0.0, 0.0, 0.0), (1.0, -2.0, 0.7), (3.0, 1.0, 2.0)):
         eta = float(water.elevation(x, y, t))
         assert head(water.rows, x, y, eta, t, True) == pytest.approx(0.0, abs=1e-15)
@@ -52,13 +66,17 @@ def test_at_small_steepness_it_is_that_of_linear_theory():
     k, h = float(np.hypot(*wave.rows[0, 1:3])), 10.0
     for z in (-0.5, -3.0, -10.0):
         expected = 1e-4 * math.cosh(k * (z + h)) / math.cosh(k * h) - z
-        assert head(Water(waves=wave).rows, 0.0, 0.0, z, 0.0, True) - expected == pytest.approx(0.0, abs=1e-7)
+        assert head(Water(waves=wave).rows, 0.0, 0.0, z, 0.0, True) - expected == pytest.approx(
+            0.0, abs=1e-7
+        )
 
 
 @pytest.mark.parametrize("kind", [False, True])
 def test_a_level_that_goes_up_and_down_adds_its_height(kind):
     water = Water(waves=LevelOscillation(0.3, 0.5))
-    assert head(water.rows, 1.0, 2.0, -1.0, 0.0, kind) == pytest.approx(1.0 + float(water.elevation(1.0, 2.0, 0.0)))
+    assert head(water.rows, 1.0, 2.0, -1.0, 0.0, kind) == pytest.approx(
+        1.0 + float(water.elevation(1.0, 2.0, 0.0))
+    )
 
 
 # forces on fixed bodies
@@ -76,10 +94,16 @@ def test_under_water_the_force_is_minus_volume_times_the_gradient_at_the_centre(
         mesh = shapes.cylinder(1.0, 2.0).transformed(along)
     size = mesh.volume * amplitude * kr * math.exp(-kr * depth)
     for time in np.linspace(0.0, wave.period, 7):
-        force = press(mesh, Water(waves=wave), (0.0, 0.0, -depth), time=time)[:3] - [0.0, 0.0, mesh.volume]
+        force = press(mesh, Water(waves=wave), (0.0, 0.0, -depth), time=time)[:3] - [
+            0.0,
+            0.0,
+            mesh.volume,
+        ]
         phase = -2 * math.pi * time / wave.period
         # of constant magnitude, and downward under the crest
-        assert force == pytest.approx(size * np.array([math.sin(phase), 0.0, -math.cos(phase)]), abs=0.01 * size)
+        assert force == pytest.approx(
+            size * np.array([math.sin(phase), 0.0, -math.cos(phase)]), abs=0.01 * size
+        )
 
 
 @pytest.mark.parametrize(
@@ -110,7 +134,9 @@ def test_a_floating_hemisphere_is_lifted_by_its_published_fraction(period, fract
     assert math.hypot(*lifts) / area == pytest.approx(fraction, abs=0.004)
     # of the surface alone: 2 J1(kR) / kR
     kr = float(np.hypot(*water.rows[0, 1:3])) * 5.0
-    lifts = [press(ball, water, (0, 0, 0), time=t, dynamic=False)[2] - still for t in (0.0, quarter)]
+    lifts = [
+        press(ball, water, (0, 0, 0), time=t, dynamic=False)[2] - still for t in (0.0, quarter)
+    ]
     assert math.hypot(*lifts) / area == pytest.approx(abs(2 * j1(kr) / kr), abs=0.004)
 
 
@@ -119,7 +145,10 @@ def test_a_floating_hemisphere_is_lifted_by_its_published_fraction(period, fract
 @pytest.mark.parametrize("name", ["dented", "box"])
 def test_it_is_what_a_fine_sum_over_small_triangles_gives(name, place, dynamic):
     mesh = vessels.dented(4) if name == "dented" else shapes.box((1.0, 0.5, 0.4))
-    waves = [RegularWave(0.06, wavelength=4.0, direction=0.4), RegularWave(0.03, wavelength=2.5, direction=2.0, phase=1.0)]
+    waves = [
+        RegularWave(0.06, wavelength=4.0, direction=0.4),
+        RegularWave(0.03, wavelength=2.5, direction=2.0, phase=1.0),
+    ]
     water = Water(waves=waves)
     turn = trimesh.transformations.rotation_matrix(0.7, [1, 2, 3])[:3, :3]
     row = press(mesh, water, place, turn, 0.3, dynamic)
@@ -144,7 +173,9 @@ def test_on_still_water_it_is_archimedes(seed):
     wet = PackedHulls([mesh], [0], [0], Water()).submerge(place[None], turn.reshape(1, 9), 0.0)[0]
     row = press(mesh, Water(), place, turn)
     assert row[:3] == pytest.approx([0.0, 0.0, wet[0]], abs=1e-10 * mesh.volume)
-    assert row[3:] == pytest.approx(np.cross(wet[1:4] - place, [0.0, 0.0, wet[0]]), abs=1e-10 * mesh.volume)
+    assert row[3:] == pytest.approx(
+        np.cross(wet[1:4] - place, [0.0, 0.0, wet[0]]), abs=1e-10 * mesh.volume
+    )
 
 
 def test_large_triangles_are_summed_finely_enough():
@@ -165,7 +196,9 @@ def test_under_a_slope_the_depth_alone_pushes_by_the_slope():
     force = press(BALL, Water(waves=wave), (0.0, 0.0, -2.0), time=time, dynamic=False)
     slope = 1e-3 * 2 * math.pi / 100.0
     # the mean of the slope over the ball is less by (k R)^2 / 10
-    assert force[:3] == pytest.approx(BALL.volume * np.array([-slope, 0.0, 1.0]), abs=1e-3 * slope * BALL.volume)
+    assert force[:3] == pytest.approx(
+        BALL.volume * np.array([-slope, 0.0, 1.0]), abs=1e-3 * slope * BALL.volume
+    )
 
 
 # a body that moves
@@ -190,7 +223,13 @@ def floater(draft, period, pressure):
             heights.append(data.qpos[0])
             mujoco.mj_step(model, data)
     t = np.array(times)
-    swings = [np.cos(omega * t), np.sin(omega * t), np.cos(natural * t), np.sin(natural * t), np.ones(len(t))]
+    swings = [
+        np.cos(omega * t),
+        np.sin(omega * t),
+        np.cos(natural * t),
+        np.sin(natural * t),
+        np.ones(len(t)),
+    ]
     c, s, *_ = np.linalg.lstsq(np.column_stack(swings), heights, rcond=None)[0] / amplitude
     return math.hypot(c, s), math.atan2(s, c), omega**2 / 9.81 * draft
 
@@ -211,9 +250,13 @@ def test_on_long_waves_it_rides_the_surface_without_lag(pressure):
 def test_in_short_waves_the_surface_alone_lifts_a_deep_body_too_far(pressure):
     # 1 / (1 - kd), against e^-kd / (1 - kd) with the pressure: at kd = 0.5 twice, and 1.21
     draft = 0.5
-    response, _, kd = floater(draft, 2 * math.pi * math.sqrt(draft / 9.81) / math.sqrt(0.5), pressure)
+    response, _, kd = floater(
+        draft, 2 * math.pi * math.sqrt(draft / 9.81) / math.sqrt(0.5), pressure
+    )
     assert kd == pytest.approx(0.5)
-    assert response == pytest.approx(2.0 if pressure == "archimedes" else 2.0 * math.exp(-0.5), rel=5e-3)
+    assert response == pytest.approx(
+        2.0 if pressure == "archimedes" else 2.0 * math.exp(-0.5), rel=5e-3
+    )
 
 
 # as loads of a model
@@ -222,7 +265,12 @@ def test_in_short_waves_the_surface_alone_lifts_a_deep_body_too_far(pressure):
 MODEL = """<mujoco><option timestep="0.01"/><worldbody><body name="a" pos="0 0 -.1"><freejoint/>
 <geom type="box" size=".5 .3 .2" mass="60" pos=".1 0 0"/><geom type="sphere" size=".2" pos="0 0 -.6" mass="20"/>
 <body pos=".6 0 0"><joint axis="0 1 0"/><geom type="capsule" size=".1 .2" mass="9"/></body></body></worldbody></mujoco>"""
-SEA = Water(waves=[RegularWave(0.1, wavelength=3.0, direction=0.3), RegularWave(0.05, wavelength=2.0, phase=1.0)])
+SEA = Water(
+    waves=[
+        RegularWave(0.1, wavelength=3.0, direction=0.3),
+        RegularWave(0.05, wavelength=2.0, phase=1.0),
+    ]
+)
 
 
 @pytest.mark.parametrize("pressure", ["hydrostatic", "froude-krylov"])
@@ -266,7 +314,9 @@ def test_where_there_are_no_waves_nothing_changes():
     model = mujoco.MjModel.from_xml_string(MODEL)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    plain, other = (Buoyancy(model, pressure=p).evaluate(data) for p in ("archimedes", "froude-krylov"))
+    plain, other = (
+        Buoyancy(model, pressure=p).evaluate(data) for p in ("archimedes", "froude-krylov")
+    )
     assert np.array_equal(plain.total.force, other.total.force)
     assert np.array_equal(other.by_cause["wave_pressure"], np.zeros((model.nbody, 6)))
     assert np.array_equal(plain.hull.torque, other.hull.torque)
@@ -280,7 +330,10 @@ def test_a_scene_says_which():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"pressure": "dynamic"}, "pressure is 'dynamic'; possible: archimedes, froude-krylov, hydrostatic"),
+        (
+            {"pressure": "dynamic"},
+            "pressure is 'dynamic'; possible: archimedes, froude-krylov, hydrostatic",
+        ),
         (
             {"pressure": "hydrostatic", "method": "sections"},
             "pressure 'hydrostatic' needs the method 'exact', not 'sections'",

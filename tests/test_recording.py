@@ -17,7 +17,12 @@ SHORT = ["duration=0.5", "record_rate=30"]
 
 
 def rerun(*arguments):
-    return subprocess.run([sys.executable, "-m", "rerun", "rrd", *arguments], capture_output=True, text=True, check=False)
+    return subprocess.run(
+        [sys.executable, "-m", "rerun", "rrd", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
 
 
 def recorded(path, scene="hourglass_drop_waves", settings=SHORT, frames=None):
@@ -44,7 +49,10 @@ def test_a_recording_verifies(whole):
 
 
 def entities(text):
-    return {entity.replace("\\", "") for entity in re.findall(r"/(?:world|plots|scene|summary)[^\s:,]*", text)}
+    return {
+        entity.replace("\\", "")
+        for entity in re.findall(r"/(?:world|plots|scene|summary)[^\s:,]*", text)
+    }
 
 
 def test_it_holds_everything_that_was_promised(whole):
@@ -122,8 +130,20 @@ def test_a_whole_recording_is_replaced_by_a_whole_one(tmp_path):
 
 @pytest.mark.slow
 def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
-    command = [sys.executable, "-m", "buoyancy_mj", "run", "auv_waves", "--duration", "10000", "--record", "run.rrd"]
-    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True)
+    command = [
+        sys.executable,
+        "-m",
+        "buoyancy_mj",
+        "run",
+        "auv_waves",
+        "--duration",
+        "10000",
+        "--record",
+        "run.rrd",
+    ]
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True
+    )
     partial = tmp_path / "run.partial.rrd"
     deadline = time.monotonic() + 60.0
     while not (partial.exists() and partial.stat().st_size > 4_000_000):
@@ -159,9 +179,15 @@ except RecordingError as error:
 def test_a_full_disk_ends_the_recording_at_a_whole_message_and_says_so(tmp_path):
     path = tmp_path / "run.rrd"
     done = subprocess.run(
-        [sys.executable, "-c", FULL_DISK, str(path)], capture_output=True, text=True, check=False, timeout=120
+        [sys.executable, "-c", FULL_DISK, str(path)],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
     )
-    assert f"the recording broke off: File too large; what was written is in '{path}'" in done.stdout, done.stderr
+    assert (
+        f"the recording broke off: File too large; what was written is in '{path}'" in done.stdout
+    ), done.stderr
     assert path.stat().st_size <= 2_000_000
     assert "/world/bodies/sauvc_auv" in entities(rerun("print", "-vv", str(path)).stdout)
 
@@ -169,7 +195,10 @@ def test_a_full_disk_ends_the_recording_at_a_whole_message_and_says_so(tmp_path)
 def test_a_place_that_is_no_folder_is_told(tmp_path):
     (tmp_path / "file").write_text("")
     simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_still"], SHORT))
-    with pytest.raises(RecordingError, match=r"cannot write '.*run.partial.rrd': .*; choose another place \(--record\)"):
+    with pytest.raises(
+        RecordingError,
+        match=r"cannot write '.*run.partial.rrd': .*; choose another place \(--record\)",
+    ):
         Recording(simulation, tmp_path / "file" / "run.rrd")
 
 
@@ -193,16 +222,22 @@ def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
 
 
 @pytest.mark.parametrize("method", ["convex_hull", "sections"])
-def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_the_forces(tmp_path, method):
+def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_the_forces(
+    tmp_path, method
+):
     found = []
     for chosen in ("exact", method):
-        simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], [f"method={chosen}", "duration=0.01"]))
+        simulation = Simulation(
+            read_scene(catalog.scenes()["auv_waves"], [f"method={chosen}", "duration=0.01"])
+        )
         recording = Recording(simulation, tmp_path / f"{chosen}.rrd")
         recording.add(next(simulation.frames()))
         found.append({geom: wet.copy() for geom, wet in recording._wet.items()})
         recording.close(simulation.summary())
         assert rerun("verify", str(tmp_path / f"{chosen}.rrd")).returncode == 0
-        assert "/world/waterline" in entities(rerun("print", "-vv", str(tmp_path / f"{chosen}.rrd")).stdout)
+        assert "/world/waterline" in entities(
+            rerun("print", "-vv", str(tmp_path / f"{chosen}.rrd")).stdout
+        )
     exact, other = found
     assert exact.keys() == other.keys()
     assert all((exact[geom] == other[geom]).all() for geom in exact)
@@ -224,16 +259,37 @@ def test_names_may_hold_anything(tmp_path):
 
 def test_two_runs_do_not_write_one_file(tmp_path):
     simulation, recording = recorded(tmp_path / "run.rrd", frames=3)
-    with pytest.raises(RecordingError, match=r"another run is writing '.*run.partial.rrd'; choose another place"):
+    with pytest.raises(
+        RecordingError, match=r"another run is writing '.*run.partial.rrd'; choose another place"
+    ):
         Recording(simulation, tmp_path / "run.rrd")
     assert recording.close(simulation.summary()) == tmp_path / "run.rrd"
 
 
 @pytest.mark.slow
 def test_a_live_viewer_that_cannot_open_is_told_and_leaves_nothing(tmp_path):
-    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    command = [sys.executable, "-m", "buoyancy_mj", "run", "hourglass_drop_still", "--live", "--record", "out.rrd"]
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False, timeout=120)
+    environment = {
+        key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")
+    }
+    command = [
+        sys.executable,
+        "-m",
+        "buoyancy_mj",
+        "run",
+        "hourglass_drop_still",
+        "--live",
+        "--record",
+        "out.rrd",
+    ]
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=120,
+    )
     assert done.returncode == 1
     assert "error: no Rerun viewer could be started" in done.stderr
     assert "Traceback" not in done.stderr

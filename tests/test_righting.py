@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import BuoyancyWarning, EquilibriumError, ModelError, Water, righting_arm
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.balance import floated
+from buoyancy_mj.statics.balance import find_draft
 from buoyancy_mj.statics.hydrostatics import hydrostatics_of
-from buoyancy_mj.statics.vessel import vessel_of
+from buoyancy_mj.statics.vessel import build_vessel
 from tests import naive, vessels
 
 DEGREES = np.radians([10.0, 20.0, 25.0, 35.0, 45.0, 60.0, 90.0, 120.0])
@@ -46,8 +46,10 @@ def test_the_initial_slope_is_the_metacentric_height(axis, name):
     model = vessels.of_mesh(mesh, 500.0 * mesh.volume, mesh.centroid + [0, 0, -0.1])
     small = 1e-4
     found = righting_arm(model, heel=[-small, 0.0, small], axis=axis, trim="fixed")
-    upright = hydrostatics_of(floated(vessel_of(model), np.eye(3)))
-    assert (found.gz[2] - found.gz[0]) / (2 * small) == pytest.approx(getattr(upright, name), rel=1e-5)
+    upright = hydrostatics_of(find_draft(build_vessel(model), np.eye(3)))
+    assert (found.gz[2] - found.gz[0]) / (2 * small) == pytest.approx(
+        getattr(upright, name), rel=1e-5
+    )
 
 
 @pytest.mark.parametrize("seed", [2, 5, 7])
@@ -67,9 +69,9 @@ def test_with_free_trim_no_torque_is_left_across(seed):
     model = vessels.of_mesh(mesh, 500.0 * mesh.volume, mesh.centroid + [0.05, 0, -0.1])
     found = righting_arm(model, heel=np.radians([0, 20, 40, 60]))
     assert np.abs(found.trim).max() > 1e-3
-    vessel = vessel_of(model)
+    vessel = build_vessel(model)
     for heel, trim, gz in zip(found.heel, found.trim, found.gz, strict=True):
-        pose = floated(vessel, Rotation.from_euler("YX", [trim, heel]).as_matrix())
+        pose = find_draft(vessel, Rotation.from_euler("YX", [trim, heel]).as_matrix())
         assert pose.arm[:2] == pytest.approx([0.0, -gz], abs=1e-9)
 
 
@@ -79,9 +81,12 @@ def test_the_area_is_the_work_that_heels_it(trim):
     mesh = vessels.dented(0)
     model = vessels.of_mesh(mesh, 500.0 * mesh.volume, mesh.centroid + [0, 0, -0.1])
     found = righting_arm(model, heel=np.radians(np.arange(0, 60.25, 0.25)), trim=trim)
-    vessel = vessel_of(model)
+    vessel = build_vessel(model)
     ends = [
-        floated(vessel, Rotation.from_euler("YX", [found.trim[i], found.heel[i]]).as_matrix()).energy / vessel.weight
+        find_draft(
+            vessel, Rotation.from_euler("YX", [found.trim[i], found.heel[i]]).as_matrix()
+        ).energy
+        / vessel.weight
         for i in (0, -1)
     ]
     work = np.trapezoid(found.gz * np.cos(found.trim), found.heel)
@@ -123,16 +128,22 @@ def test_sites_tell_when_they_go_under():
     assert set(found.immersed) == {"deck_edge_starboard", "deck_edge_port", "downflooding"}
     assert math.degrees(found.immersed["deck_edge_starboard"]) == pytest.approx(30.9638, abs=1e-3)
     assert math.degrees(found.immersed["downflooding"]) == pytest.approx(90.0, abs=1e-6)
-    assert math.degrees(found.immersed["deck_edge_port"]) == pytest.approx(180.0 - 30.9638, abs=1e-3)
+    assert math.degrees(found.immersed["deck_edge_port"]) == pytest.approx(
+        180.0 - 30.9638, abs=1e-3
+    )
     keel = righting_arm(model, points="keel", heel=np.radians([0, 10]))
     assert keel.immersed == {"keel": 0.0}
-    assert math.isnan(righting_arm(model, points="other", heel=np.radians([0, 10])).immersed["other"])
+    assert math.isnan(
+        righting_arm(model, points="other", heel=np.radians([0, 10])).immersed["other"]
+    )
 
 
 def test_where_no_trim_balances_the_curve_ends_and_says_so():
     mesh = vessels.dented(1)
     model = vessels.of_mesh(mesh, 500.0 * mesh.volume, mesh.centroid + [0, 0, -0.1])
-    with pytest.warns(BuoyancyWarning, match="ends there: at a heel of 105 degrees it balances only"):
+    with pytest.warns(
+        BuoyancyWarning, match="ends there: at a heel of 105 degrees it balances only"
+    ):
         found = righting_arm(model)
     assert math.degrees(found.heel[-1]) == pytest.approx(104.0)
     assert len(found.gz) == len(found.trim) == len(found.draft) == 105
@@ -159,7 +170,9 @@ def test_what_makes_no_sense_is_told(arguments, message):
 
 def test_an_area_outside_of_the_curve_is_told():
     found = righting_arm(vessels.box(), heel=DEGREES)
-    with pytest.raises(ModelError, match=r"area from 0 to 1 rad; the curve goes from 0.1745\d* to 2.094\d* rad"):
+    with pytest.raises(
+        ModelError, match=r"area from 0 to 1 rad; the curve goes from 0.1745\d* to 2.094\d* rad"
+    ):
         found.area(0.0, 1.0)
 
 

@@ -89,29 +89,50 @@ def test_any_field_can_be_set(folder, setting, look):
             "durations=2",
             "unknown key 'durations'; did you mean 'duration'? possible: added_mass, coefficients, cog_shift, drag",
         ),
-        ("water.densty=2", "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level"),
+        (
+            "water.densty=2",
+            "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level",
+        ),
         (
             "water.waves.0.kind=choppy",
             "water.waves.0: unknown kind 'choppy'; possible: jonswap, level, pierson-moskowitz, regular",
         ),
-        ("water.waves.5.amplitude=1", "cannot set 'water.waves.5': the list has 2 entries, counted from 0"),
+        (
+            "water.waves.5.amplitude=1",
+            "cannot set 'water.waves.5': the list has 2 entries, counted from 0",
+        ),
         ("water.waves.0.amplitude=nan", "water.waves.0: amplitude is nan; needed is a number"),
-        ("water.waves.0.frequency=1", "give exactly one of frequency [Hz], period [s], wavelength [m]"),
+        (
+            "water.waves.0.frequency=1",
+            "give exactly one of frequency [Hz], period [s], wavelength [m]",
+        ),
         ("water.waves=3", "water: waves is 3; needed is a list of tables"),
         ("water=3", "water is 3; needed is a table"),
         ("water.density=-1", "density is -1.0; it must be above 0"),
         ("duration=0", "duration is 0; it must be at least 1e-06 and at most 1e+06"),
         ("timestep=1e-310", "timestep is 1e-310; it must be at least 1e-07 and at most 1"),
-        ("water.waves.0.kind=[1]", "water.waves.0: unknown kind [1]; possible: jonswap, level, pierson-moskowitz, regular"),
-        ("water.waves.².amplitude=1", "cannot set 'water.waves.²': the list has 2 entries, counted from 0"),
+        (
+            "water.waves.0.kind=[1]",
+            "water.waves.0: unknown kind [1]; possible: jonswap, level, pierson-moskowitz, regular",
+        ),
+        (
+            "water.waves.².amplitude=1",
+            "cannot set 'water.waves.²': the list has 2 entries, counted from 0",
+        ),
         ("duration=long", "duration is 'long'; needed is a number"),
         ("timestep=true", "timestep is True; needed is a number"),
         ("title=3", "title is 3; needed is a text in quotes"),
-        ("integrator=RK5", "unknown integrator 'RK5'; did you mean 'rk4'? possible: discrete, euler, implicit"),
+        (
+            "integrator=RK5",
+            "unknown integrator 'RK5'; did you mean 'rk4'? possible: discrete, euler, implicit",
+        ),
         ("start.position=[1, 2]", "start: position is [1, 2]; needed is a list of 3 numbers"),
         ("start.position=[1, 2, nan]", "start: position is nan; needed is a number"),
         ("start.roll=inf", "every number must be finite"),
-        ("drag.coefficient=-1", "drag coefficient is -1.0; it must be a finite number of at least 0"),
+        (
+            "drag.coefficient=-1",
+            "drag coefficient is -1.0; it must be a finite number of at least 0",
+        ),
         ("geoms=hull", "geoms is 'hull'; needed is a list of words"),
         ("duration", "'duration' is no setting; write KEY=VALUE"),
         ("title.x=3", "cannot set 'title.x': 'title' is 'A box', no table"),
@@ -124,7 +145,9 @@ def test_a_setting_that_makes_no_sense_is_told(folder, setting, message):
 
 def test_a_missing_key_is_told(folder):
     (folder / "scene.toml").write_text('title = "x"')
-    with pytest.raises(SceneError, match="scene 'scene': 'vehicle' is missing; needed is a text in quotes"):
+    with pytest.raises(
+        SceneError, match="scene 'scene': 'vehicle' is missing; needed is a text in quotes"
+    ):
         read_scene(folder / "scene.toml")
 
 
@@ -169,7 +192,9 @@ def test_mujocos_own_message_is_kept(folder):
 
 
 def test_a_vehicle_without_a_free_joint_gets_one(folder):
-    simulation = simulation_of(folder, BOX.format(joint="", more="", rest=""), "start.position=[0, 0, 1]")
+    simulation = simulation_of(
+        folder, BOX.format(joint="", more="", rest=""), "start.position=[0, 0, 1]"
+    )
     assert simulation.model.jnt_type.tolist() == [mujoco.mjtJoint.mjJNT_FREE]
     assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 1.0])
 
@@ -178,7 +203,10 @@ def test_keyframes_survive_the_free_joint(folder):
     arm = '<body pos=".3 0 0"><joint name="j"/><geom size=".05"/></body>'
     rest = '<keyframe><key name="bent" qpos=".7"/></keyframe>'
     simulation = simulation_of(
-        folder, BOX.format(joint="", more=arm, rest=rest), "start.keyframe=bent", "start.position=[1, 2, 3]"
+        folder,
+        BOX.format(joint="", more=arm, rest=rest),
+        "start.keyframe=bent",
+        "start.position=[1, 2, 3]",
     )
     assert simulation.data.qpos == pytest.approx([1, 2, 3, 1, 0, 0, 0, 0.7])
 
@@ -189,7 +217,9 @@ def test_an_unknown_keyframe_is_told(folder):
 
 
 def test_a_vehicle_on_joints_of_its_own_keeps_them(folder):
-    simulation = simulation_of(folder, BOX.format(joint='<joint type="slide" axis="0 0 1"/>', more="", rest=""))
+    simulation = simulation_of(
+        folder, BOX.format(joint='<joint type="slide" axis="0 0 1"/>', more="", rest="")
+    )
     assert simulation.model.nv == 1
     for _ in simulation.frames():
         pass
@@ -197,7 +227,10 @@ def test_a_vehicle_on_joints_of_its_own_keeps_them(folder):
 
 def test_a_start_that_cannot_be_applied_is_told(folder):
     xml = BOX.format(joint='<joint type="slide" axis="0 0 1"/>', more="", rest="")
-    with pytest.warns(BuoyancyWarning, match="hangs on joints of its own and has no free one; the position, attitude"):
+    with pytest.warns(
+        BuoyancyWarning,
+        match="hangs on joints of its own and has no free one; the position, attitude",
+    ):
         simulation_of(folder, xml, "start.position=[0, 0, 1]")
 
 
@@ -205,7 +238,11 @@ def test_several_free_bodies_start_as_one_rigid_body(folder):
     pair = """<mujoco><worldbody><body name="a" pos="1 0 0"><freejoint/><geom size=".1"/></body>
     <body name="b" pos="1 .5 0"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
     data = simulation_of(
-        folder, pair, "start.position=[0, 0, 5]", f"start.yaw={math.pi / 2}", "start.angular_velocity=[0, 0, 2]"
+        folder,
+        pair,
+        "start.position=[0, 0, 5]",
+        f"start.yaw={math.pi / 2}",
+        "start.angular_velocity=[0, 0, 2]",
     ).data
     assert data.qpos[:3] == pytest.approx([0.0, 0.0, 5.0])
     assert data.qpos[7:10] == pytest.approx([-0.5, 0.0, 5.0])
@@ -213,7 +250,9 @@ def test_several_free_bodies_start_as_one_rigid_body(folder):
 
 
 def test_a_mocap_body_is_no_vehicle(folder):
-    xml = BOX.format(joint="", more="", rest="").replace("<worldbody>", '<worldbody><body name="target" mocap="true"/>')
+    xml = BOX.format(joint="", more="", rest="").replace(
+        "<worldbody>", '<worldbody><body name="target" mocap="true"/>'
+    )
     simulation = simulation_of(folder, xml, "start.position=[0, 0, 1]")
     assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 1.0])
 
@@ -230,7 +269,12 @@ def test_an_environment_that_does_not_fit_is_told(folder):
 def test_the_summary_does_not_depend_on_the_record_rate(folder):
     summaries = []
     for rate in (100, 0.3):
-        settings = ["start.position=[0, 0, 0.5]", "start.roll=0.3", "duration=3", f"record_rate={rate}"]
+        settings = [
+            "start.position=[0, 0, 0.5]",
+            "start.roll=0.3",
+            "duration=3",
+            f"record_rate={rate}",
+        ]
         simulation = Simulation(read_scene(folder / "scene.toml", settings))
         list(simulation.frames())
         summaries.append(simulation.summary())
@@ -242,13 +286,16 @@ def test_two_bodies_without_joints_are_refused(folder):
     bodies = "<body name='a'><geom size='.1'/></body><body name='b'><geom size='.1'/></body>"
     two = f"<mujoco><worldbody>{bodies}</worldbody></mujoco>"
     with pytest.raises(
-        ModelError, match=r"has 2 bodies without a joint \('a', 'b'\); give the one that floats a <freejoint/>"
+        ModelError,
+        match=r"has 2 bodies without a joint \('a', 'b'\); give the one that floats a <freejoint/>",
     ):
         simulation_of(folder, two)
 
 
 def test_geoms_without_a_body_are_refused(folder):
-    with pytest.raises(ModelError, match="has no body that could float; put the vehicle's geoms into a <body>"):
+    with pytest.raises(
+        ModelError, match="has no body that could float; put the vehicle's geoms into a <body>"
+    ):
         simulation_of(folder, "<mujoco><worldbody><geom size='.1'/></worldbody></mujoco>")
 
 
@@ -257,13 +304,16 @@ def test_a_ground_plane_at_the_water_level_is_left_out_with_a_notice(folder):
         "<worldbody>", '<worldbody><geom name="ground" type="plane" size="1 1 1"/>'
     )
     with pytest.warns(
-        BuoyancyWarning, match="ground plane 'ground' at z = 0 m would keep out the water at 0 m and was left out"
+        BuoyancyWarning,
+        match="ground plane 'ground' at z = 0 m would keep out the water at 0 m and was left out",
     ):
         simulation = simulation_of(folder, xml)
     assert simulation.model.ngeom == 1
 
 
-@pytest.mark.parametrize("pose", ['pos="0 0 -2"', 'pos="0 5 0.7" euler="90 0 0"', 'pos="0 0 0.7" zaxis="1 0 0"'])
+@pytest.mark.parametrize(
+    "pose", ['pos="0 0 -2"', 'pos="0 5 0.7" euler="90 0 0"', 'pos="0 0 0.7" zaxis="1 0 0"']
+)
 def test_a_sea_bed_and_walls_stay(folder, pose):
     xml = BOX.format(joint="", more="", rest="").replace(
         "<worldbody>", f'<worldbody><geom name="bed" type="plane" size="1 1 1" {pose}/>'
@@ -278,7 +328,10 @@ def test_a_urdf_floats_too(folder):
         <collision><geometry><box size=".4 .3 .1"/></geometry></collision></link></robot>"""
     )
     simulation = Simulation(
-        read_scene(folder / "scene.toml", ["vehicle=box.urdf", "water.waves=[]", "duration=30", "water.density=1000"])
+        read_scene(
+            folder / "scene.toml",
+            ["vehicle=box.urdf", "water.waves=[]", "duration=30", "water.density=1000"],
+        )
     )
     *_, last = simulation.frames()
     assert last.draft == pytest.approx(0.1 / 3.0, abs=1e-3)
@@ -289,7 +342,9 @@ def test_the_environment_is_attached_under_its_own_prefix(folder):
         """<mujoco><worldbody><geom name="box" type="plane" size="1 1 1" pos="0 0 -1"/>
         <body name="buoy" pos="3 0 0"><freejoint/><geom name="buoy" size=".1" mass="1"/></body></worldbody></mujoco>"""
     )
-    simulation = Simulation(read_scene(folder / "scene.toml", ["environment=pool.xml", "start.position=[0, 0, 0.3]"]))
+    simulation = Simulation(
+        read_scene(folder / "scene.toml", ["environment=pool.xml", "start.position=[0, 0, 0.3]"])
+    )
     names = [simulation.model.geom(i).name for i in range(simulation.model.ngeom)]
     assert set(names) == {"box", "environment/box", "environment/buoy"}
     # the start is the vehicle's; the buoy stays and floats
@@ -305,7 +360,8 @@ def test_the_environment_is_attached_under_its_own_prefix(folder):
 def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
     xml = BOX.format(joint="", more="", rest="").replace('size=".2 .15 .05"', 'size="200 100 100"')
     with pytest.raises(
-        ModelError, match=r"weighs 4 kg and would displace 1.64e\+10 kg of water; check the scale of its meshes"
+        ModelError,
+        match=r"weighs 4 kg and would displace 1.64e\+10 kg of water; check the scale of its meshes",
     ):
         simulation_of(folder, xml)
 
@@ -313,7 +369,9 @@ def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
 @pytest.mark.parametrize("option", ["density='1000'", "viscosity='0.001'"])
 def test_mujocos_own_fluid_is_told_as_double_drag(folder, option):
     xml = BOX.format(joint="", more="", rest=f"<option {option}/>")
-    with pytest.warns(BuoyancyWarning, match=rf"<option {option}>: MuJoCo's own fluid drag acts as well as ours"):
+    with pytest.warns(
+        BuoyancyWarning, match=rf"<option {option}>: MuJoCo's own fluid drag acts as well as ours"
+    ):
         simulation_of(folder, xml)
 
 
@@ -328,7 +386,9 @@ def test_frames_come_at_the_record_rate(folder):
 
 def test_a_frame_holds_the_state_at_its_own_time(folder):
     simulation = Simulation(
-        read_scene(folder / "scene.toml", ["start.position=[0, 0, 1]", "duration=0.2", "water.waves=[]"])
+        read_scene(
+            folder / "scene.toml", ["start.position=[0, 0, 1]", "duration=0.2", "water.waves=[]"]
+        )
     )
     for frame in simulation.frames():
         # symplectic free fall: z = z0 - g h^2 n (n + 1) / 2
@@ -338,7 +398,9 @@ def test_a_frame_holds_the_state_at_its_own_time(folder):
 
 
 def test_the_frames_attitude_is_roll_pitch_yaw(folder):
-    scene = read_scene(folder / "scene.toml", ["start.roll=0.3", "start.pitch=-0.2", "start.yaw=1.1"])
+    scene = read_scene(
+        folder / "scene.toml", ["start.roll=0.3", "start.pitch=-0.2", "start.yaw=1.1"]
+    )
     first = next(iter(Simulation(scene).frames()))
     assert first.attitude == pytest.approx([0.3, -0.2, 1.1])
 
@@ -353,7 +415,10 @@ def test_energy_of_a_frame_is_kept_without_drag(folder):
         "integrator=RK4",
         "timestep=0.002",
     ]
-    totals = [frame.energy.total for frame in Simulation(read_scene(folder / "scene.toml", settings)).frames()]
+    totals = [
+        frame.energy.total
+        for frame in Simulation(read_scene(folder / "scene.toml", settings)).frames()
+    ]
     assert np.ptp(totals) < 1e-3 * 4.0 * 9.81 * 0.2
 
 
@@ -390,7 +455,8 @@ def test_a_diverging_simulation_is_told_with_time_body_and_quantity(folder, capf
     next(frames)
     simulation.data.qvel[2] = 1e12
     with pytest.raises(
-        DivergenceError, match=r"the simulation diverged at .* s: the velocity of body 'box' is not a finite"
+        DivergenceError,
+        match=r"the simulation diverged at .* s: the velocity of body 'box' is not a finite",
     ):
         list(frames)
 
@@ -405,14 +471,19 @@ def test_a_steep_simulation_that_runs_away_is_told(folder):
         "start.position=[0,0,0]",
     )
     simulation.data.qpos[0] = 0.1
-    with pytest.raises(DivergenceError, match=r"of body 'box' is not a finite, sensible number; try a smaller timestep"):
+    with pytest.raises(
+        DivergenceError,
+        match=r"of body 'box' is not a finite, sensible number; try a smaller timestep",
+    ):
         list(simulation.frames())
 
 
 @pytest.mark.parametrize("name", sorted(catalog.scenes()))
 def test_every_scene_that_ships_runs(name):
     simulation = Simulation(read_scene(catalog.scenes()[name]))
-    frames = [(frame.time, *frame.centre_of_mass, frame.energy.total) for frame in simulation.frames()]
+    frames = [
+        (frame.time, *frame.centre_of_mass, frame.energy.total) for frame in simulation.frames()
+    ]
     assert np.isfinite(frames).all()
     summary = simulation.summary()
     assert summary.simulated_time == pytest.approx(simulation.scene.duration)
@@ -436,10 +507,27 @@ def test_the_pool_has_the_depths_of_the_rulebook():
     hit = np.zeros(1, np.int32)
     for x, depth in ((-12.45, 1.2), (0.05, 1.6), (12.45, 1.2), (6.25, 1.4)):
         start = np.array([x, 5.0, 0.0])
-        found = mujoco.mj_ray(model, data, start, np.array([0.0, 0.0, -1.0]), None, 1, -1, hit, None)
+        found = mujoco.mj_ray(
+            model, data, start, np.array([0.0, 0.0, -1.0]), None, 1, -1, hit, None
+        )
         assert found == pytest.approx(depth, abs=3e-3)
-    for direction, distance in (([1, 0, 0], 12.5), ([-1, 0, 0], 12.5), ([0, 1, 0], 8.0), ([0, -1, 0], 8.0)):
-        found = mujoco.mj_ray(model, data, np.array([0.0, 0.0, -0.6]), np.array(direction, float), None, 1, -1, hit, None)
+    for direction, distance in (
+        ([1, 0, 0], 12.5),
+        ([-1, 0, 0], 12.5),
+        ([0, 1, 0], 8.0),
+        ([0, -1, 0], 8.0),
+    ):
+        found = mujoco.mj_ray(
+            model,
+            data,
+            np.array([0.0, 0.0, -0.6]),
+            np.array(direction, float),
+            None,
+            1,
+            -1,
+            hit,
+            None,
+        )
         assert found == pytest.approx(distance, abs=1e-6)
 
 

@@ -22,7 +22,7 @@ from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels import waves as kernels
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes.scene import scene_from_table
-from buoyancy_mj.settings.settings import Settings, settings_from_texts, texts_from_settings
+from buoyancy_mj.settings.settings import Settings, parse_plugin_config, write_plugin_config
 from buoyancy_mj.submersion.exact import PackedHulls
 from tests import naive, vessels
 
@@ -38,7 +38,9 @@ SEAS = [
 def elevations(sea, times=HOUR, x=0.0):
     """The surface at one place."""
     a, kx, _, omega, phase, _ = sea.rows.T
-    return (a[:, None] * np.cos(kx[:, None] * x - omega[:, None] * times + phase[:, None])).sum(axis=0)
+    return (a[:, None] * np.cos(kx[:, None] * x - omega[:, None] * times + phase[:, None])).sum(
+        axis=0
+    )
 
 
 # spectra
@@ -60,12 +62,19 @@ def test_the_spectrum_is_the_published_one():
 def test_the_zero_crossing_period_is_the_published_one(gamma):
     # DNV-RP-C205, 3.5.5: a fit, for gamma from 1 to 7
     fit = 0.6673 + 0.05037 * gamma - 0.006230 * gamma**2 + 0.0003341 * gamma**3
-    assert JonswapSea(1.0, 6.0, gamma=gamma).zero_crossing_period / 6.0 == pytest.approx(fit, rel=0.01)
+    assert JonswapSea(1.0, 6.0, gamma=gamma).zero_crossing_period / 6.0 == pytest.approx(
+        fit, rel=0.01
+    )
 
 
 @pytest.mark.parametrize("sea", SEAS[:3])
 def test_height_is_four_standard_deviations_and_the_waves_have_the_spectrums_moments(sea):
-    area, _ = quad(sea.spectrum, 0.3 * 2 * math.pi / sea.peak_period, 10 * 2 * math.pi / sea.peak_period, limit=200)
+    area, _ = quad(
+        sea.spectrum,
+        0.3 * 2 * math.pi / sea.peak_period,
+        10 * 2 * math.pi / sea.peak_period,
+        limit=200,
+    )
     assert 4.0 * math.sqrt(area) == pytest.approx(sea.significant_height, rel=1e-4)
     a, omega = sea.rows[:, 0], sea.rows[:, 3]
     assert 4.0 * math.sqrt(0.5 * (a**2).sum()) == pytest.approx(sea.significant_height, rel=1e-12)
@@ -139,7 +148,9 @@ def test_crests_are_distributed_as_of_a_gaussian_sea():
 def test_the_seed_makes_the_sea_the_same_everywhere():
     # the Mersenne Twister's first numbers for seed 0, 0.8444218515250481 and 0.7579544029403025, are part of Python's tests
     rows = JonswapSea(1.0, 5.0, seed=0).rows
-    assert rows[:2, 4] == pytest.approx([2 * math.pi * 0.8444218515250481, 2 * math.pi * 0.7579544029403025], rel=1e-15)
+    assert rows[:2, 4] == pytest.approx(
+        [2 * math.pi * 0.8444218515250481, 2 * math.pi * 0.7579544029403025], rel=1e-15
+    )
     again, other = JonswapSea(1.0, 5.0, seed=0).rows, JonswapSea(1.0, 5.0, seed=1).rows
     assert np.array_equal(rows, again)
     assert not np.allclose(rows[:, 4], other[:, 4])
@@ -162,14 +173,22 @@ def test_seas_and_swell_add_up():
 def test_water_is_kept_does_not_turn_and_moves_with_its_surface(depth):
     water, h = Water(waves=JonswapSea(0.4, 3.0, spreading=5.0, depth=depth)), 1e-4
     for p in np.array([[1.0, 2.0, -0.3], [-3.0, 0.5, -2.0]]):
-        gradient = np.array([(water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h) for e in np.eye(3)])
+        gradient = np.array(
+            [
+                (water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h)
+                for e in np.eye(3)
+            ]
+        )
         assert np.trace(gradient) == pytest.approx(0.0, abs=1e-7)
         assert gradient == pytest.approx(gradient.T, abs=1e-7)
         rate = (water.velocity(p, 0.2 + h) - water.velocity(p, 0.2 - h)) / (2 * h)
         assert water.acceleration(p, 0.2) == pytest.approx(rate, abs=1e-6)
         rise = (water.elevation(*p[:2], 0.2 + h) - water.elevation(*p[:2], 0.2 - h)) / (2 * h)
         assert water.velocity([*p[:2], 0.0], 0.2)[2] == pytest.approx(float(rise), abs=1e-7)
-        around = [water.elevation(p[0] + h * a, p[1] + h * b, 0.2) for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1))]
+        around = [
+            water.elevation(p[0] + h * a, p[1] + h * b, 0.2)
+            for a, b in ((1, 0), (-1, 0), (0, 1), (0, -1))
+        ]
         slope = [(around[0] - around[1]) / (2 * h), (around[2] - around[3]) / (2 * h)]
         assert water.slope(*p[:2], 0.2) == pytest.approx(slope, abs=1e-7)
 
@@ -179,11 +198,20 @@ def test_pressure_and_acceleration_obey_eulers_equation_to_first_order(depth):
     # rho a = -grad p - rho g z; the stretching, and the square of the velocity, are of second order
     worst = []
     for height in (1e-3, 2e-3):
-        water, h, density = Water(waves=JonswapSea(height, 3.0, spreading=5.0, depth=depth)), 1e-3, 1000.0
+        water, h, density = (
+            Water(waves=JonswapSea(height, 3.0, spreading=5.0, depth=depth)),
+            1e-3,
+            1000.0,
+        )
         errors = []
         for p in np.array([[1.0, 2.0, -0.2], [-3.0, 0.5, -1.0], [0.3, 4.0, -2.5]]):
-            slope = [(water.pressure(p + h * e, 0.4) - water.pressure(p - h * e, 0.4)) / (2 * h) for e in np.eye(3)]
-            errors.append(density * water.acceleration(p, 0.4) + np.array(slope) + [0.0, 0.0, density * 9.81])
+            slope = [
+                (water.pressure(p + h * e, 0.4) - water.pressure(p - h * e, 0.4)) / (2 * h)
+                for e in np.eye(3)
+            ]
+            errors.append(
+                density * water.acceleration(p, 0.4) + np.array(slope) + [0.0, 0.0, density * 9.81]
+            )
         worst.append(np.abs(errors).max())
     assert worst[0] < 2e-3 * density * 9.81 * 1e-3 * (2 * math.pi / 3.0) ** 2 / 9.81 * 10
     assert worst[1] / worst[0] == pytest.approx(4.0, rel=0.1)
@@ -212,7 +240,9 @@ def test_many_points_at_once_are_summed_as_one_by_one():
 @pytest.mark.parametrize("depth", [math.inf, 3.0])
 @pytest.mark.parametrize(("radius", "z"), [(0.3, 0.0), (0.3, -0.6), (2.5, -1.0)])
 def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
-    rows = Water(waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]).rows
+    rows = Water(
+        waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]
+    ).rows
     sea = np.empty(local.NEAR + 6 * len(rows))
     eta = naive.elevation(rows, 1.3, -2.0, 0.7)
     local.gather(rows, 1.3, -2.0, z, eta, 0.7, radius, *local.plan(rows, radius), True, sea)
@@ -233,9 +263,13 @@ def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
         along = naive.elevation(rows, x + step, y, 0.7) - naive.elevation(rows, x - step, y, 0.7)
         across = naive.elevation(rows, x, y + step, 0.7) - naive.elevation(rows, x, y - step, 0.7)
         # the last degree counts once more for each
-        assert slope == pytest.approx([along / (2 * step), across / (2 * step)], abs=local.MOST * local.ACCURACY)
+        assert slope == pytest.approx(
+            [along / (2 * step), across / (2 * step)], abs=local.MOST * local.ACCURACY
+        )
         if height < eta:
-            assert head == pytest.approx(kernels.head(rows, x, y, height, 0.7, True), abs=local.ACCURACY * radius)
+            assert head == pytest.approx(
+                kernels.head(rows, x, y, height, 0.7, True), abs=local.ACCURACY * radius
+            )
 
 
 @pytest.mark.parametrize("components", [4, 5, 64, 200])
@@ -249,7 +283,9 @@ def test_a_hull_in_a_sea_displaces_what_the_sum_over_small_triangles_says(compon
         found = packed.submerge(place[None], turn.reshape(1, 9), time)[0]
         volume, moments = naive.directly(fine, place, turn, water, time)
         assert found[0] == pytest.approx(volume, abs=2e-3 * mesh.volume)
-        assert found[0] * (found[1:4] - place) == pytest.approx(moments, abs=2e-3 * mesh.volume * mesh.radius)
+        assert found[0] * (found[1:4] - place) == pytest.approx(
+            moments, abs=2e-3 * mesh.volume * mesh.radius
+        )
 
 
 def test_waves_gathered_and_waves_one_by_one_push_alike():
@@ -262,7 +298,10 @@ def test_waves_gathered_and_waves_one_by_one_push_alike():
             rows = [PackedHulls([mesh], [0], [0], Water(waves=w)) for w in (one, many)]
             a, b = (packed.submerge(np.array([[0.1, 0.2, z]]), turn, time)[0] for packed in rows)
             assert b[:5] == pytest.approx(a[:5], abs=1e-6)
-            a, b = (packed.press(np.array([[0.1, 0.2, z]]), turn, time, dynamic=True)[0] for packed in rows)
+            a, b = (
+                packed.press(np.array([[0.1, 0.2, z]]), turn, time, dynamic=True)[0]
+                for packed in rows
+            )
             assert b == pytest.approx(a, abs=1e-6)
 
 
@@ -270,26 +309,47 @@ def test_waves_gathered_and_waves_one_by_one_push_alike():
 
 
 def test_seas_stand_in_scenes_and_in_models():
-    table = {"kind": "jonswap", "significant_height": 0.5, "peak_period": 4.0, "seed": 5, "spreading": 8.0}
+    table = {
+        "kind": "jonswap",
+        "significant_height": 0.5,
+        "peak_period": 4.0,
+        "seed": 5,
+        "spreading": 8.0,
+    }
     scene = scene_from_table({"title": "t", "vehicle": "hourglass", "water": {"waves": [table]}})
     assert scene.water.waves == (JonswapSea(0.5, 4.0, seed=5, spreading=8.0),)
     for sea in SEAS:
-        texts = texts_from_settings(Settings(water=Water(waves=sea)))
-        assert np.array_equal(settings_from_texts(texts, "here").water.rows, sea.rows)
+        texts = write_plugin_config(Settings(water=Water(waves=sea)))
+        assert np.array_equal(parse_plugin_config(texts, "here").water.rows, sea.rows)
 
 
 @pytest.mark.parametrize(
     ("make", "message"),
     [
         (lambda: JonswapSea(-1.0, 5.0), "significant_height is -1.0; it must be at least 0"),
-        (lambda: JonswapSea(math.nan, 5.0), "significant_height is nan; it must be a finite number"),
+        (
+            lambda: JonswapSea(math.nan, 5.0),
+            "significant_height is nan; it must be a finite number",
+        ),
         (lambda: JonswapSea(1.0, 0.0), "peak_period is 0.0; it must be at least 1e-06"),
         (lambda: JonswapSea(1.0, 5.0, gamma=0.5), "gamma is 0.5; it must be at least 1"),
-        (lambda: JonswapSea(1.0, 5.0, components=0), "components is 0; it must be a whole number from 1 to 10000"),
-        (lambda: JonswapSea(1.0, 5.0, components=6.5), "components is 6.5; it must be a whole number"),
+        (
+            lambda: JonswapSea(1.0, 5.0, components=0),
+            "components is 0; it must be a whole number from 1 to 10000",
+        ),
+        (
+            lambda: JonswapSea(1.0, 5.0, components=6.5),
+            "components is 6.5; it must be a whole number",
+        ),
         (lambda: JonswapSea(1.0, 5.0, seed=-1), "seed is -1; it must be a whole number from 0"),
-        (lambda: JonswapSea(1.0, 5.0, spreading=0.0), "spreading is 0.0; it must be an exponent above 0, or inf"),
-        (lambda: JonswapSea(3.0, 9.0, depth=2.0), "significant_height is 3.0 m in water 2.0 m deep; such waves break"),
+        (
+            lambda: JonswapSea(1.0, 5.0, spreading=0.0),
+            "spreading is 0.0; it must be an exponent above 0, or inf",
+        ),
+        (
+            lambda: JonswapSea(3.0, 9.0, depth=2.0),
+            "significant_height is 3.0 m in water 2.0 m deep; such waves break",
+        ),
         (lambda: PiersonMoskowitzSea(0.0), "significant_height is 0.0; it must be above 0"),
     ],
 )
@@ -301,9 +361,15 @@ def test_impossible_seas_are_told(make, message):
 @pytest.mark.parametrize(
     ("wave", "message"),
     [
-        (RegularWave(0.5, wavelength=5.0), "a wave 1 m high and 5 m long, 1.41 times as steep as one that breaks"),
+        (
+            RegularWave(0.5, wavelength=5.0),
+            "a wave 1 m high and 5 m long, 1.41 times as steep as one that breaks",
+        ),
         (RegularWave(0.5, wavelength=50.0, depth=3.0), "make it at most 2.56 m high"),
-        (JonswapSea(3.0, 4.0), "a sea 3 m high at 4 s, 1.80 times as steep as seas get before their waves break"),
+        (
+            JonswapSea(3.0, 4.0),
+            "a sea 3 m high at 4 s, 1.80 times as steep as seas get before their waves break",
+        ),
     ],
 )
 def test_seas_that_break_are_told_with_the_number(wave, message):
@@ -320,5 +386,7 @@ def test_seas_that_break_are_told_with_the_number(wave, message):
 
 def test_water_shallower_than_the_hull_is_told():
     water = Water(waves=RegularWave(0.02, period=2.0, depth=0.1))
-    with pytest.raises(ModelError, match=r"water 0\.1 m deep, and body 'hull' has a draft of at least 0\.158 m"):
+    with pytest.raises(
+        ModelError, match=r"water 0\.1 m deep, and body 'hull' has a draft of at least 0\.158 m"
+    ):
         Buoyancy(vessels.box(), water)

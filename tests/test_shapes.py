@@ -55,5 +55,9 @@ def test_a_standing_capsule_and_cylinder_have_their_volume_to_a_thousandth(draft
     h = min(draft, 0.2)
     capsule = np.pi * h**2 * (0.6 - h) / 3.0 + np.pi * 0.04 * tube
     whole = np.pi * 0.04 * (0.6 + 0.8 / 3.0)
-    assert submerge(shapes.capsule(0.2, 0.3), (0, 0, 0.5 - draft)).volume == pytest.approx(capsule, abs=1e-3 * whole)
-    assert submerge(shapes.cylinder(0.2, 0.3), (0, 0, 0.3 - draft)).volume == pytest.approx(np.pi * 0.04 * draft, rel=1e-12)
+    assert submerge(shapes.capsule(0.2, 0.3), (0, 0, 0.5 - draft)).volume == pytest.approx(
+        capsule, abs=1e-3 * whole
+    )
+    assert submerge(shapes.cylinder(0.2, 0.3), (0, 0, 0.3 - draft)).volume == pytest.approx(
+        np.pi * 0.04 * draft, rel=1e-12
+    )

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, submerge
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.mesh import refined
+from buoyancy_mj.meshes.mesh import refine
 from buoyancy_mj.submersion import exact
 from buoyancy_mj.submersion import submerge as submersion
 from tests import naive
@@ -19,10 +19,17 @@ SPHERE = trimesh_hull(trimesh.creation.icosphere(subdivisions=6))
 TORUS = trimesh_hull(trimesh.creation.torus(1.0, 0.4, major_sections=40, minor_sections=20))
 HOURGLASS = naive.two_cones(0.5, 1.0, sections=64)
 PIECES = TriMesh(
-    np.vstack([shapes.box((0.3, 0.2, 0.1)).vertices + [1.0, 0.0, 0.2], shapes.sphere(0.4).vertices]),
+    np.vstack(
+        [shapes.box((0.3, 0.2, 0.1)).vertices + [1.0, 0.0, 0.2], shapes.sphere(0.4).vertices]
+    ),
     np.vstack([shapes.box((0.3, 0.2, 0.1)).faces, shapes.sphere(0.4).faces + 8]),
 )
-ODD = {"torus": TORUS, "hourglass": HOURGLASS, "pieces": PIECES, "capsule": shapes.capsule(0.3, 0.6)}
+ODD = {
+    "torus": TORUS,
+    "hourglass": HOURGLASS,
+    "pieces": PIECES,
+    "capsule": shapes.capsule(0.3, 0.6),
+}
 
 
 def turned(seed):
@@ -34,7 +41,12 @@ def turned(seed):
 
 @pytest.mark.parametrize(
     ("draft", "volume", "offset"),
-    [(0.2, 0.117286, 0.867857), (0.5, 0.654498, 0.675), (1.0, 2.094395, 0.375), (1.5, 3.534292, 0.125)],
+    [
+        (0.2, 0.117286, 0.867857),
+        (0.5, 0.654498, 0.675),
+        (1.0, 2.094395, 0.375),
+        (1.5, 3.534292, 0.125),
+    ],
 )
 def test_a_sphere_cap_has_its_volume_and_centroid(draft, volume, offset):
     # V = pi h^2 (3 R - h) / 3, centroid 3 (2 R - h)^2 / (4 (3 R - h)) below the centre
@@ -71,16 +83,27 @@ def test_a_lying_cylinder_has_its_segment(draft, volume, offset):
 
 @pytest.mark.parametrize(
     ("heel", "arm"),
-    [(10, 0.0229382), (20, 0.0499955), (25, 0.0667645), (35, 0.1055164), (45, 0.1131371), (60, 0.09)],
+    [
+        (10, 0.0229382),
+        (20, 0.0499955),
+        (25, 0.0667645),
+        (35, 0.1055164),
+        (45, 0.1131371),
+        (60, 0.09),
+    ],
 )
 def test_a_heeled_box_has_its_righting_arm_past_the_deck_edge_too(heel, arm):
     # GZ = sin phi (GM + BM tan^2 phi / 2) up to 30.96 degrees; beyond, the exact section
     box = shapes.box((1.0, 0.5, 0.3))
-    assert naive.righting_arm(box, np.zeros(3), 0.6, np.radians(heel)) == pytest.approx(arm, abs=6e-8)
+    assert naive.righting_arm(box, np.zeros(3), 0.6, np.radians(heel)) == pytest.approx(
+        arm, abs=6e-8
+    )
 
 
 def test_a_box_has_its_metacentric_height():
-    assert naive.metacentric_height(shapes.box((1.0, 0.5, 0.3)), np.zeros(3), 0.6) == pytest.approx(0.127778, abs=1e-6)
+    assert naive.metacentric_height(shapes.box((1.0, 0.5, 0.3)), np.zeros(3), 0.6) == pytest.approx(
+        0.127778, abs=1e-6
+    )
 
 
 def test_the_floating_cuboid_of_openfoam_wants_to_tip():
@@ -97,13 +120,20 @@ def test_the_floating_cuboid_of_openfoam_wants_to_tip():
         (0.8, 0.415197, 0.031801, 0.928318, 0.642477),
     ],
 )
-def test_cones_float_at_their_draft_with_their_metacentric_height(ratio, up_draft, up_gm, down_draft, down_gm):
+def test_cones_float_at_their_draft_with_their_metacentric_height(
+    ratio, up_draft, up_gm, down_draft, down_gm
+):
     # half-angle 45 degrees, height and radius 1, uniform density; apex down T = c^(1/3)
     volume = ratio * np.pi / 3.0
-    for apex_up, draft, gm, centre in ((True, up_draft, up_gm, 0.25), (False, down_draft, down_gm, 0.75)):
+    for apex_up, draft, gm, centre in (
+        (True, up_draft, up_gm, 0.25),
+        (False, down_draft, down_gm, 0.75),
+    ):
         mesh = naive.cone(1.0, 1.0, apex_up=apex_up)
         assert -naive.floating(mesh, volume) == pytest.approx(draft, abs=2e-5)
-        assert naive.metacentric_height(mesh, np.array([0.0, 0.0, centre]), volume) == pytest.approx(gm, abs=2e-4)
+        assert naive.metacentric_height(
+            mesh, np.array([0.0, 0.0, centre]), volume
+        ) == pytest.approx(gm, abs=2e-4)
 
 
 @given(st.integers(0, 1000), st.floats(0.2, 0.8))
@@ -114,7 +144,11 @@ def test_turned_over_a_body_keeps_the_product_of_volume_and_metacentric_height(s
     mesh = mesh.transformed(np.eye(3), -mesh.centroid)
     over = mesh.transformed(naive.roll(np.pi))
     one, two = ratio * mesh.volume, (1.0 - ratio) * mesh.volume
-    gm = [naive.metacentric_height(m, np.zeros(3), v, heel=s * 1e-5) for m, v in ((mesh, one), (over, two)) for s in (1, -1)]
+    gm = [
+        naive.metacentric_height(m, np.zeros(3), v, heel=s * 1e-5)
+        for m, v in ((mesh, one), (over, two))
+        for s in (1, -1)
+    ]
     assert one * (gm[0] + gm[1]) == pytest.approx(two * (gm[2] + gm[3]), rel=1e-3, abs=1e-4)
 
 
@@ -126,11 +160,14 @@ def test_an_ellipsoid_cut_askew_has_its_segment():
     turn = Rotation.align_vectors([[0.0, 0.0, 1.0]], [normal])[0].as_matrix()
     wet = submerge(mesh, (0.0, 0.0, -0.05), turn)
     assert wet.volume == pytest.approx(0.08165, abs=5e-5)
-    assert turn.T @ (wet.centroid + [0, 0, 0.05]) == pytest.approx([-0.0807965, 0.0193912, -0.0400751], abs=5e-5)
+    assert turn.T @ (wet.centroid + [0, 0, 0.05]) == pytest.approx(
+        [-0.0807965, 0.0193912, -0.0400751], abs=5e-5
+    )
 
 
 @pytest.mark.parametrize(
-    ("draft", "volume"), [(0.25, 0.1513528), (0.5, 0.2290745), (1.0, 0.2617994), (1.5, 0.2945243), (2.0, 0.5235988)]
+    ("draft", "volume"),
+    [(0.25, 0.1513528), (0.5, 0.2290745), (1.0, 0.2617994), (1.5, 0.2945243), (2.0, 0.5235988)],
 )
 def test_an_hourglass_of_two_cones_has_its_volume_through_the_neck(draft, volume):
     # V = (pi R^2 H / 3) (1 - (1 - z / H)^3) for all 0 <= z <= 2 H
@@ -181,7 +218,9 @@ def test_the_surface_may_pass_through_vertices_edges_and_faces(height):
     corner_up = Rotation.align_vectors([[0.0, 0.0, 1.0]], [[1.0, 1.0, 1.0]])[0].as_matrix()
     cube = shapes.box((0.5, 0.5, 0.5))
     # through three corners of the cube: a sixth of it
-    assert submerge(cube, (0, 0, np.sqrt(3.0) / 6.0), corner_up).volume == pytest.approx(1.0 / 6.0, abs=1e-12)
+    assert submerge(cube, (0, 0, np.sqrt(3.0) / 6.0), corner_up).volume == pytest.approx(
+        1.0 / 6.0, abs=1e-12
+    )
 
 
 @given(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.floats(-np.pi, np.pi), st.integers(0, 1000))
@@ -204,7 +243,10 @@ def test_a_mesh_cut_in_two_displaces_as_much(seed):
         shapes.box(((1.0 - cut) / 2.0, 0.5, 0.3)).transformed(np.eye(3), ((cut + 1.0) / 2.0, 0, 0)),
     ]
     position, turn = (0.0, 0.0, rng.uniform(-0.5, 0.5)), turned(seed)
-    wet, parts = submerge(whole, position, turn), [submerge(half, position, turn) for half in halves]
+    wet, parts = (
+        submerge(whole, position, turn),
+        [submerge(half, position, turn) for half in halves],
+    )
     assert sum(part.volume for part in parts) == pytest.approx(wet.volume, abs=1e-12)
     if wet.volume > 0.0:
         moment = sum(part.volume * np.nan_to_num(part.centroid) for part in parts)
@@ -225,7 +267,9 @@ def test_wet_and_dry_make_the_whole(height, seed):
 def test_the_waterplane_area_is_how_volume_grows_with_draft():
     h = 1e-5
     up, down = (submerge(TORUS, (0, 0, s * h), turned(5)).volume for s in (1, -1))
-    assert submerge(TORUS, (0, 0, 0), turned(5)).waterplane_area == pytest.approx((down - up) / (2 * h), rel=1e-6)
+    assert submerge(TORUS, (0, 0, 0), turned(5)).waterplane_area == pytest.approx(
+        (down - up) / (2 * h), rel=1e-6
+    )
 
 
 # waves ----------------------------------------------------------------------------------------------
@@ -236,7 +280,10 @@ def test_a_flat_wave_is_still_water():
         Water(waves=RegularWave(0.0, period=2.0)),
         Water(waves=RegularWave(0.01, wavelength=1e6, phase=np.pi / 2)),
     ):
-        wet, still = submerge(TORUS, (0, 0, 0.2), turned(1), water), submerge(TORUS, (0, 0, 0.2), turned(1))
+        wet, still = (
+            submerge(TORUS, (0, 0, 0.2), turned(1), water),
+            submerge(TORUS, (0, 0, 0.2), turned(1)),
+        )
         assert wet.volume == pytest.approx(still.volume, rel=1e-7)
         assert wet.centroid == pytest.approx(still.centroid, abs=1e-7)
 
@@ -261,12 +308,17 @@ def test_in_steep_waves_four_hulls_long_the_error_is_below_a_ten_thousandth(name
     mesh = shapes.box(flat[name]) if name in flat else ODD[name]
     wavelength = 8.0 * mesh.radius
     water = Water(waves=RegularWave(0.07 * wavelength, wavelength=wavelength))
-    packed, reference = (exact.PackedHulls([mesh], [0], [0], water, tolerance) for tolerance in (2e-3, 2e-5))
+    packed, reference = (
+        exact.PackedHulls([mesh], [0], [0], water, tolerance) for tolerance in (2e-3, 2e-5)
+    )
     for seed in range(20):
         rng = np.random.default_rng(seed)
         position = rng.uniform(-1.0, 1.0, (1, 3)) * [[wavelength, wavelength, 0.5 * mesh.radius]]
         turn = turned(seed).reshape(1, 9)
-        rough, fine = packed.submerge(position, turn, 0.0)[0].copy(), reference.submerge(position, turn, 0.0)[0].copy()
+        rough, fine = (
+            packed.submerge(position, turn, 0.0)[0].copy(),
+            reference.submerge(position, turn, 0.0)[0].copy(),
+        )
         assert rough[0] == pytest.approx(fine[0], abs=1e-4 * mesh.volume)
         if fine[0] > 0.0 and rough[0] > 0.0:
             error = fine[0] * np.abs(rough[1:4] - fine[1:4]).max()
@@ -287,7 +339,7 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
     mesh, turn = shapes.box(rng.uniform(0.1, 0.5, 3)), turned(seed)
     position = np.array([rng.uniform(-9, 9), 0.0, rng.uniform(-1.2, 1.2)])
     points = mesh.vertices @ turn.T + position
-    depths = water.depth(refined(points, mesh.faces, 0.05)[0], 0.0)
+    depths = water.depth(refine(points, mesh.faces, 0.05)[0], 0.0)
     wet = submerge(mesh, position, turn, water)
     if depths.min() > 1e-3:
         assert wet.volume == pytest.approx(mesh.volume, rel=5e-4)
@@ -309,7 +361,11 @@ def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
 @pytest.mark.parametrize(
     ("position", "rotation", "message"),
     [
-        ((0.0, 0.0), None, r"position is \(0.0, 0.0\) and time 0.0; they must be three finite numbers and one"),
+        (
+            (0.0, 0.0),
+            None,
+            r"position is \(0.0, 0.0\) and time 0.0; they must be three finite numbers and one",
+        ),
         ((0.0, 0.0, np.nan), None, r"position is \(0.0, 0.0, nan\) and time 0.0; they must be"),
         ((0.0, 0.0, 0.0), np.diag([1.0, 1.0, -1.0]), "it must be a rotation matrix"),
         ((0.0, 0.0, 0.0), 2.0 * np.eye(3), "it must be a rotation matrix"),
@@ -326,5 +382,7 @@ def test_the_wetted_surface_has_the_wetted_area_and_its_waterline_lies_on_the_wa
     triangles, line = submersion.wetted_surface(TORUS, np.array([1.0, 2.0, 0.3]), turn, water, 0.0)
     a, b, c = triangles.swapaxes(0, 1)
     areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    assert areas.sum() == pytest.approx(submerge(TORUS, (1, 2, 0.3), turn, water).wetted_area, rel=1e-12)
+    assert areas.sum() == pytest.approx(
+        submerge(TORUS, (1, 2, 0.3), turn, water).wetted_area, rel=1e-12
+    )
     assert line[..., 2] == pytest.approx(np.full(line.shape[:2], 0.3), abs=1e-12)

@@ -15,15 +15,21 @@ from typer.testing import CliRunner
 from buoyancy_mj import SceneError, Simulation, SweepError, read_scene
 from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog, sweep
-from buoyancy_mj.scenes.sweep import Over, Sweep, draws, grid, parsed
+from buoyancy_mj.scenes.sweep import Over, Sweep, draws, grid, parse_over
 
 QUICK = ("duration=0.3",)
 
 
-def plan(tmp_path, *over, scene="hourglass_drop_waves", name="out.csv", settings=QUICK, values=None):
-    fields = [parsed(text) for text in over]
+def plan(
+    tmp_path, *over, scene="hourglass_drop_waves", name="out.csv", settings=QUICK, values=None
+):
+    fields = [parse_over(text) for text in over]
     return Sweep(
-        catalog.scenes()[scene], settings, tuple(f.key for f in fields), tuple(values or grid(fields)), tmp_path / name
+        catalog.scenes()[scene],
+        settings,
+        tuple(f.key for f in fields),
+        tuple(values or grid(fields)),
+        tmp_path / name,
     )
 
 
@@ -38,9 +44,19 @@ def read(path):
 @pytest.mark.parametrize(
     ("scene", "over"),
     [
-        ("hourglass_drop_waves", ["water.waves.0.amplitude=0.05:0.3:2", "start.position.2=0.3:0.6:2"]),
+        (
+            "hourglass_drop_waves",
+            ["water.waves.0.amplitude=0.05:0.3:2", "start.position.2=0.3:0.6:2"],
+        ),
         ("auv_waves", ["water.waves.0.phase=0:3:2", "mass=20:30:2", "cog_shift.2=-0.03:0.03:2"]),
-        ("auv_waves", ["water.waves.0.frequency=0.3:0.6:2", "water.waves.0.direction=0:1:2", "start.roll=0:0.5:2"]),
+        (
+            "auv_waves",
+            [
+                "water.waves.0.frequency=0.3:0.6:2",
+                "water.waves.0.direction=0:1:2",
+                "start.roll=0:0.5:2",
+            ],
+        ),
         ("auv_pool", ["start.position.2=-1.6:-0.2:2", "mass=25:60:2"]),
     ],
 )
@@ -55,19 +71,38 @@ def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
             alone.step()
         alone._frame()
         told = dataclasses.asdict(alone.summary())
-        for name in ("mass", "displacement", "net_weight", "peak_draft", "final_draft", "cog_z_range", "simulated_time"):
+        for name in (
+            "mass",
+            "displacement",
+            "net_weight",
+            "peak_draft",
+            "final_draft",
+            "cog_z_range",
+            "simulated_time",
+        ):
             assert float(row[name]) == pytest.approx(told[name], rel=1e-12, abs=1e-12), name
         assert int(float(row["contact_steps"])) == told["contact_steps"]
-        assert row["first_contact"] == ("" if told["first_contact"] is None else str(told["first_contact"]))
+        assert row["first_contact"] == (
+            "" if told["first_contact"] is None else str(told["first_contact"])
+        )
 
 
 def test_the_bottom_is_felt_in_a_sweep_too(tmp_path):
-    rows = list(plan(tmp_path, "mass=20:60:2", scene="auv_pool", settings=("duration=2", "start.position.2=-1.0")).run())
+    rows = list(
+        plan(
+            tmp_path,
+            "mass=20:60:2",
+            scene="auv_pool",
+            settings=("duration=2", "start.position.2=-1.0"),
+        ).run()
+    )
     assert [int(row["contact_steps"]) > 0 for row in rows] == [False, True]
 
 
 def test_one_thread_and_two_give_the_same_rows(tmp_path):
-    rows = [list(plan(tmp_path, "start.position.2=0.3:0.9:5", name=f"{n}.csv").run(n)) for n in (1, 2)]
+    rows = [
+        list(plan(tmp_path, "start.position.2=0.3:0.9:5", name=f"{n}.csv").run(n)) for n in (1, 2)
+    ]
     assert rows[0] == rows[1]
 
 
@@ -121,7 +156,16 @@ def test_what_is_there_is_not_run_again(name, tmp_path, monkeypatch):
 def test_a_sweep_that_is_killed_goes_on(tmp_path):
     out = tmp_path / "out.csv"
     over = ["--over", "start.position.2=0.1:0.9:100"]
-    command = [sys.executable, "-m", "buoyancy_mj", "sweep", "hourglass_drop_waves", *over, "--out", str(out)]
+    command = [
+        sys.executable,
+        "-m",
+        "buoyancy_mj",
+        "sweep",
+        "hourglass_drop_waves",
+        *over,
+        "--out",
+        str(out),
+    ]
     running = subprocess.Popen(command)
     while not out.exists() or len(out.read_bytes().splitlines()) < 3:
         assert running.poll() is None
@@ -162,32 +206,55 @@ def test_what_the_engine_refuses_is_a_reason_too(tmp_path):
     text = """<mujoco><option><flag sleep="enable"/></option>
     <worldbody><body><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
     (tmp_path / "sleepy.xml").write_text(text)
-    rows = list(plan(tmp_path, "start.position.2=0:1:2", settings=(*QUICK, f'vehicle="{tmp_path}/sleepy.xml"')).run())
+    rows = list(
+        plan(
+            tmp_path,
+            "start.position.2=0:1:2",
+            settings=(*QUICK, f'vehicle="{tmp_path}/sleepy.xml"'),
+        ).run()
+    )
     assert all("lets bodies at rest sleep" in row["reason"] for row in rows)
 
 
 @pytest.mark.parametrize(
-    "text", ["mass", "mass=1", "mass=1:2:0", "mass=a:b:3", "mass=1:2:3:4", "=1:2:3", "mass=0:inf:3", "mass=1:2:x"]
+    "text",
+    [
+        "mass",
+        "mass=1",
+        "mass=1:2:0",
+        "mass=a:b:3",
+        "mass=1:2:3:4",
+        "=1:2:3",
+        "mass=0:inf:3",
+        "mass=1:2:x",
+    ],
 )
 def test_a_span_that_is_none_is_told(text):
     with pytest.raises(SweepError, match="it must be KEY=a:b:n, n values from a to b"):
-        parsed(text)
+        parse_over(text)
 
 
 def test_sweeps_that_make_no_sense_are_told(tmp_path):
-    with pytest.raises(SweepError, match=r"has no number of values; add it \(:n\), or give --draws"):
-        grid([parsed("mass=1:2")])
+    with pytest.raises(
+        SweepError, match=r"has no number of values; add it \(:n\), or give --draws"
+    ):
+        grid([parse_over("mass=1:2")])
     with pytest.raises(SweepError, match=r"results go to a file that ends in \.csv or \.parquet"):
         plan(tmp_path, "mass=1:2:2", name="out.txt")
     with pytest.raises(SweepError, match="a field is given twice: mass, mass"):
         plan(tmp_path, "mass=1:2:2", "mass=1:2:2")
     list(plan(tmp_path, "mass=20:21:2").run())
-    with pytest.raises(SweepError, match="holds other columns than this sweep has; give another --out, or remove it"):
+    with pytest.raises(
+        SweepError,
+        match="holds other columns than this sweep has; give another --out, or remove it",
+    ):
         list(plan(tmp_path, "start.yaw=0:1:2").run())
     with pytest.raises(SweepError, match="holds runs of another scene, or with other flags"):
         list(plan(tmp_path, "mass=20:21:2", settings=("duration=0.4",)).run())
     for other in ("mass=20:22:2", "mass=20:20:1"):
-        with pytest.raises(SweepError, match="holds runs with other values; give another --out, or remove it"):
+        with pytest.raises(
+            SweepError, match="holds runs with other values; give another --out, or remove it"
+        ):
             list(plan(tmp_path, other).run())
     with pytest.raises(SceneError, match="unknown key 'mas'; did you mean 'mass'"):
         list(plan(tmp_path, "mas=20:21:2", name="new.csv").run())
@@ -201,7 +268,16 @@ def test_sweeps_that_make_no_sense_are_told(tmp_path):
 
 def test_the_command_tells_how_many_failed(tmp_path):
     out = tmp_path / "rows.csv"
-    arguments = ["sweep", "hourglass_drop_still", "--over", "mass=-100:100:3", "--duration", "0.1", "--out", str(out)]
+    arguments = [
+        "sweep",
+        "hourglass_drop_still",
+        "--over",
+        "mass=-100:100:3",
+        "--duration",
+        "0.1",
+        "--out",
+        str(out),
+    ]
     told = CliRunner().invoke(app, arguments)
     assert told.exit_code == 0, told.output
     assert "3 runs, 2 failed" in told.output

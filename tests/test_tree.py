@@ -30,11 +30,17 @@ MESHES = {
     "plate": subdivided(shapes.box((0.8, 0.6, 0.01)), 4),
     "far from its frame": BALL.transformed(np.eye(3), (20.0, -30.0, 10.0)),
     "two pieces": TriMesh(
-        np.vstack([BALL.vertices, BALL.vertices + 1.5]), np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)])
+        np.vstack([BALL.vertices, BALL.vertices + 1.5]),
+        np.vstack([BALL.faces, BALL.faces + len(BALL.vertices)]),
     ),
 }
 BEAM = subdivided(shapes.box((4.0, 0.1, 0.1)), 6)
-WAVES = Water(waves=[RegularWave(0.1, wavelength=8.0), RegularWave(0.05, wavelength=5.0, direction=1.0, phase=0.4)])
+WAVES = Water(
+    waves=[
+        RegularWave(0.1, wavelength=8.0),
+        RegularWave(0.05, wavelength=5.0, direction=1.0, phase=0.4),
+    ]
+)
 
 
 def packed(mesh, water, monkeypatch, *, few, tolerance=2e-3):
@@ -80,7 +86,9 @@ def test_a_tree_holds_each_triangle_in_one_leaf_and_each_corner_in_its_boxes(nam
     np.testing.assert_array_equal(start[leaves[1:]], end[leaves[:-1]])
     assert (start[leaves[0]], end[leaves[-1]]) == (0, len(hulls._vertices))
     for node in range(len(first)):
-        assert (np.unique(faces[first[node] : last[node]]) == np.arange(start[node], end[node])).all()
+        assert (
+            np.unique(faces[first[node] : last[node]]) == np.arange(start[node], end[node])
+        ).all()
         corners = hulls._vertices[faces[first[node] : last[node]]].reshape(-1, 3)
         off = np.abs(corners - hulls._boxes[node, :3]) - hulls._boxes[node, 3:6]
         assert off.max() <= 1e-12
@@ -102,7 +110,9 @@ def test_the_moments_are_the_integrals(monkeypatch):
     hulls = packed(MESHES["torus"], Water(), monkeypatch, few=0)
     # a rule of degree two: the middles of the edges
     for node in (0, 1, len(hulls._spans) // 2, len(hulls._spans) - 1):
-        corners = hulls._vertices[hulls._faces[slice(*hulls._spans[node, :2])]] - hulls._boxes[node, :3]
+        corners = (
+            hulls._vertices[hulls._faces[slice(*hulls._spans[node, :2])]] - hulls._boxes[node, :3]
+        )
         middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
         vectors = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         weighed = np.repeat(vectors / 3.0, 3, axis=0)
@@ -110,7 +120,11 @@ def test_the_moments_are_the_integrals(monkeypatch):
         found = hulls._moments[node]
         assert found[:3] == pytest.approx(vectors.sum(axis=0), abs=1e-12)
         assert found[3:12].reshape(3, 3) == pytest.approx(y.T @ weighed, abs=1e-12)
-        for row, (a, b) in zip(found[12:30].reshape(6, 3), ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)), strict=True):
+        for row, (a, b) in zip(
+            found[12:30].reshape(6, 3),
+            ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)),
+            strict=True,
+        ):
             assert row == pytest.approx((y[:, a] * y[:, b]) @ weighed, abs=1e-12)
         assert found[30] == pytest.approx(np.linalg.norm(vectors, axis=1).sum(), rel=1e-12)
 
@@ -119,7 +133,9 @@ def test_the_moments_are_the_integrals(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "water", [Water(), Water(level=0.1, waves=LevelOscillation(0.2, 0.5)), WAVES], ids=["still", "level", "waves"]
+    "water",
+    [Water(), Water(level=0.1, waves=LevelOscillation(0.2, 0.5)), WAVES],
+    ids=["still", "level", "waves"],
 )
 @pytest.mark.parametrize("name", MESHES)
 def test_the_tree_finds_what_the_plain_way_finds(name, water, pair):
@@ -133,7 +149,9 @@ def test_the_tree_finds_what_the_plain_way_finds(name, water, pair):
         if a[clip.VOLUME] > 1e-3 * mesh.volume:
             assert b[clip.CENTROID] == pytest.approx(a[clip.CENTROID], abs=1e-10)
         assert b[clip.WETTED_AREA] == pytest.approx(a[clip.WETTED_AREA], abs=1e-11 * mesh.area)
-        assert b[clip.WATERPLANE_AREA] == pytest.approx(a[clip.WATERPLANE_AREA], abs=1e-11 * mesh.area)
+        assert b[clip.WATERPLANE_AREA] == pytest.approx(
+            a[clip.WATERPLANE_AREA], abs=1e-11 * mesh.area
+        )
 
 
 @pytest.mark.parametrize("name", [name for name in MESHES if name != "far from its frame"])
@@ -144,7 +162,11 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
         position, turn = place(mesh, seed, 0.15 * np.sin(seed) - 0.05)
         volume, moments = naive.directly(fine, position[0], turn.reshape(3, 3), WAVES, 0.1 * seed)
         # the fine mesh errs too, by the bow of the surface over its edges
-        bow = WAVES.curvature * np.max(np.linalg.norm(np.diff(fine.vertices[fine.faces], axis=1), axis=2)) ** 2 / 12.0
+        bow = (
+            WAVES.curvature
+            * np.max(np.linalg.norm(np.diff(fine.vertices[fine.faces], axis=1), axis=2)) ** 2
+            / 12.0
+        )
         slack = 1e-4 * mesh.volume + bow * mesh.area / 2.0
         found = hulls.submerge(position, turn, 0.1 * seed)[0]
         assert found[0] == pytest.approx(volume, abs=min(slack, 1e-3 * mesh.volume))
@@ -161,10 +183,13 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
 )
 @settings(max_examples=25, deadline=None)
 def test_any_tolerance_is_kept(seed, height, tolerance, name):
-    mesh = shapes.box({"box": (0.5, 0.4, 0.3), "plate": (0.5, 0.5, 0.01), "rod": (0.8, 0.02, 0.02)}[name])
+    mesh = shapes.box(
+        {"box": (0.5, 0.4, 0.3), "plate": (0.5, 0.5, 0.01), "rod": (0.8, 0.02, 0.02)}[name]
+    )
     pose = place(mesh, seed, height)
     rough, fine = (
-        exact.PackedHulls([mesh], [0], [0], WAVES, t).submerge(*pose, 0.0)[0] for t in (tolerance, tolerance / 100)
+        exact.PackedHulls([mesh], [0], [0], WAVES, t).submerge(*pose, 0.0)[0]
+        for t in (tolerance, tolerance / 100)
     )
     assert rough[0] == pytest.approx(fine[0], abs=tolerance * mesh.volume)
     middle = pose[0][0] + pose[1].reshape(3, 3) @ mesh.bounds.mean(axis=0)
@@ -180,7 +205,9 @@ def test_a_plate_that_lies_flat_in_a_wave_keeps_its_tolerance(tilt):
     for height in (-0.022, -0.02, -0.018, 0.0, 0.01):
         position = np.array([[0.0, 0.0, 0.02 + height]])
         rows = [
-            exact.PackedHulls([plate], [0], [0], water, t).submerge(position, naive.roll(tilt).reshape(1, 9), 0.0)[0]
+            exact.PackedHulls([plate], [0], [0], water, t).submerge(
+                position, naive.roll(tilt).reshape(1, 9), 0.0
+            )[0]
             for t in (2e-3, 1e-4)
         ]
         assert rows[0][0] == pytest.approx(rows[1][0], abs=2e-3 * plate.volume)
@@ -199,7 +226,9 @@ def test_a_long_body_in_short_waves_is_right_too():
 
 @pytest.mark.slow
 def test_waves_steeper_than_any_sea_cost_no_eternity():
-    hulls = exact.PackedHulls([shapes.box((0.5, 0.4, 0.3))], [0], [0], Water(waves=RegularWave(1e5, wavelength=1e-3)))
+    hulls = exact.PackedHulls(
+        [shapes.box((0.5, 0.4, 0.3))], [0], [0], Water(waves=RegularWave(1e5, wavelength=1e-3))
+    )
     assert np.isfinite(hulls.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), 0.1)[0, 0])
 
 
@@ -218,7 +247,9 @@ def test_several_hulls_share_one_structure_and_do_not_mix(pair):
         turns = Rotation.random(3, random_state=5).as_matrix().reshape(3, 9)
         found = together.submerge(positions, turns, 0.0).copy()
         for mesh, position, turn, row in zip(meshes, positions, turns, found, strict=True):
-            alone = exact.PackedHulls([mesh], [0], [0], Water()).submerge(position[None], turn[None], 0.0)[0]
+            alone = exact.PackedHulls([mesh], [0], [0], Water()).submerge(
+                position[None], turn[None], 0.0
+            )[0]
             np.testing.assert_array_equal(row, alone)
 
 

@@ -56,7 +56,14 @@ def test_rows_hold_within_what_is_allowed():
     assert Row("a", -2.0, -2.1, 0.06).difference == pytest.approx(-0.05)
     assert Row("a", 2.0, 2.1, 0.11, absolute=True).passes
     assert not Row("a", 2.0, float("nan"), 0.11).passes
-    assert report.cells(Row("a [m]", 2.0, 2.1, 0.01)) == ("a [m]", "2", "2.1", "+5 %", "1 %", "**fails**")
+    assert report.cells(Row("a [m]", 2.0, 2.1, 0.01)) == (
+        "a [m]",
+        "2",
+        "2.1",
+        "+5 %",
+        "1 %",
+        "**fails**",
+    )
 
 
 def test_the_page_is_written_with_its_pictures(tmp_path, monkeypatch):

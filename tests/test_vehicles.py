@@ -11,7 +11,7 @@ import pytest
 import trimesh
 from typer.testing import CliRunner
 
-from buoyancy_mj import mended
+from buoyancy_mj import repair
 from buoyancy_mj.cli import app
 from buoyancy_mj.meshes import shapes
 from tests import vessels
@@ -38,7 +38,7 @@ def stl(folder, name, mesh, kind="stl"):
     trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(path, file_type=kind)
 
 
-def inspected(path, *flags):
+def inspect_model(path, *flags):
     result = CliRunner().invoke(app, ["inspect", path, "--json", *flags])
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout), result.stderr
@@ -46,7 +46,18 @@ def inspected(path, *flags):
 
 def ran(path, *flags):
     result = CliRunner().invoke(
-        app, ["run", "auv_waves", "--vehicle", path, "--no-record", "--json", "--duration", "0.5", *flags]
+        app,
+        [
+            "run",
+            "auv_waves",
+            "--vehicle",
+            path,
+            "--no-record",
+            "--json",
+            "--duration",
+            "0.5",
+            *flags,
+        ],
     )
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout), result.stderr
@@ -68,24 +79,36 @@ def test_files_of_a_package_are_found_above_the_urdf(tmp_path):
     stl(tmp_path, "my_robot/meshes/base.stl", shapes.box((0.2, 0.2, 0.1)))
     text = URDF.format(file="package://my_robot/meshes/base.stl", mass=10, inertia=0.2)
     path = write(tmp_path, "my_robot/urdf/robot.urdf", text)
-    found, _ = inspected(path)
-    assert found["floating"][0]["displaced"] == pytest.approx(1000 * (0.032 + np.pi * 0.03**2 * 0.3), rel=1e-6)
+    found, _ = inspect_model(path)
+    assert found["floating"][0]["displaced"] == pytest.approx(
+        1000 * (0.032 + np.pi * 0.03**2 * 0.3), rel=1e-6
+    )
     summary, _ = ran(path)
     assert summary["mass"] == pytest.approx(11.0)
 
 
 def test_files_of_a_package_are_found_on_the_ros_path(tmp_path, monkeypatch):
     stl(tmp_path, "elsewhere/my_robot/base.stl", shapes.box((0.2, 0.2, 0.1)))
-    path = write(tmp_path, "robot.urdf", URDF.format(file="package://my_robot/base.stl", mass=10, inertia=0.2))
-    refused(path, "no folder 'my_robot' above it or on ROS_PACKAGE_PATH holds that file; put the package there")
+    path = write(
+        tmp_path,
+        "robot.urdf",
+        URDF.format(file="package://my_robot/base.stl", mass=10, inertia=0.2),
+    )
+    refused(
+        path,
+        "no folder 'my_robot' above it or on ROS_PACKAGE_PATH holds that file; put the package there",
+    )
     monkeypatch.setenv("ROS_PACKAGE_PATH", f"/nowhere:{tmp_path / 'elsewhere'}")
-    assert inspected(path)[0]["problems"] == []
+    assert inspect_model(path)[0]["problems"] == []
 
 
 def test_a_base_without_inertia_is_told(tmp_path):
     stl(tmp_path, "base.stl", shapes.box((0.2, 0.2, 0.1)))
     path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=0.0, inertia=0.1))
-    refused(path, "a body that floats needs mass and inertia: give it an <inertial>, or bound them by <compiler boundmass")
+    refused(
+        path,
+        "a body that floats needs mass and inertia: give it an <inertial>, or bound them by <compiler boundmass",
+    )
 
 
 def test_a_mesh_in_ascii_is_told(tmp_path):
@@ -109,7 +132,7 @@ FISH = """<mujoco><option gravity="{gravity}"><flag gravity="{flag}"/></option><
 )
 def test_what_swims_without_gravity_weighs_in_water(tmp_path, gravity, flag, told):
     path = write(tmp_path, "fish.xml", FISH.format(gravity=gravity, flag=flag))
-    found, notes = inspected(path)
+    found, notes = inspect_model(path)
     assert f"the vehicle {told}; in water it weighs, by 0 0 -9.81" in notes
     assert found["floating"][0]["sentence"].startswith("floats: 0.1")
     summary, notes = ran(path)
@@ -124,7 +147,7 @@ def test_what_swims_without_gravity_weighs_in_water(tmp_path, gravity, flag, tol
 def hull(tmp_path, closed):
     vertices, faces = vessels.tanker()
     if closed:
-        mesh, _ = mended(vertices, faces)
+        mesh, _ = repair(vertices, faces)
         vertices, faces = mesh.vertices, mesh.faces
     else:
         # as it was published: the wetted surface alone
@@ -142,7 +165,7 @@ def hull(tmp_path, closed):
 
 def test_a_ship_of_panels_floats_at_its_draft(tmp_path):
     path = hull(tmp_path, closed=True)
-    found, _ = inspected(path)
+    found, _ = inspect_model(path)
     at = found["floating"][0]["rest"]["hydrostatics"]
     # the model of 1 : 100 displaces 92.3 l at a draft of 0.1 m
     assert at["draft"] == pytest.approx(0.1, abs=2e-4)
@@ -159,8 +182,11 @@ def test_an_open_shell_is_refused_and_its_convex_hull_floats(tmp_path):
     assert "it is open" in result.stdout.replace("\n", " ")
     result = CliRunner().invoke(app, ["run", "auv_waves", "--vehicle", path, "--no-record"])
     assert result.exit_code == 1
-    assert "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)" in result.stderr
-    found, _ = inspected(path, "--hull", "convex")
+    assert (
+        "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)"
+        in result.stderr
+    )
+    found, _ = inspect_model(path, "--hull", "convex")
     assert found["geoms"][0]["hull"] == "convex"
     ran(path, "--hull", "convex")
 
@@ -173,7 +199,7 @@ def test_ballast_stays_in_a_urdf(tmp_path):
     flags = ["--reserve", "0", "--box", "-.1", "-.1", "-.4", ".1", ".1", "-.3"]
     result = CliRunner().invoke(app, ["ballast", path, *flags, "--out", heavy])
     assert result.exit_code == 0, result.output
-    found, _ = inspected(heavy)
+    found, _ = inspect_model(heavy)
     assert found["floating"][0]["sentence"].startswith("hovers: neutral")
     assert "ballast_box" in [geom["name"] for geom in found["geoms"]]
     # and touches nothing

@@ -37,7 +37,11 @@ def test_waves_are_tiles_that_lie_on_the_surface():
         assert float(water.elevation(top[0], top[1], 0.3)) == pytest.approx(top[2], abs=5e-3)
         h = 1e-4
         slope = [
-            (water.elevation(top[0] + h * a, top[1] + h * b, 0.3) - water.elevation(top[0], top[1], 0.3)) / h
+            (
+                water.elevation(top[0] + h * a, top[1] + h * b, 0.3)
+                - water.elevation(top[0], top[1], 0.3)
+            )
+            / h
             for a, b in ((1, 0), (0, 1))
         ]
         assert -normal[:2] / normal[2] == pytest.approx(np.array(slope, float), abs=0.02)
@@ -57,10 +61,15 @@ def test_drawing_again_replaces_what_was_drawn():
 
 
 def test_without_a_display_the_viewer_says_so():
-    environment = {key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    environment = {
+        key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")
+    }
     done = subprocess.run(
         [sys.executable, "-m", "buoyancy_mj", "view", "hourglass_drop_still"],
         env=environment, capture_output=True, text=True, check=False, timeout=120,
     )  # fmt: skip
     assert done.returncode == 1
-    assert done.stderr == "error: MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none\n"
+    assert (
+        done.stderr
+        == "error: MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none\n"
+    )

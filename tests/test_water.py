@@ -43,7 +43,9 @@ def test_frequency_period_and_wavelength_describe_one_wave(frequency, depth):
         assert again.rows == pytest.approx(first.rows, rel=1e-9)
 
 
-@pytest.mark.parametrize("given_", [{}, {"period": 2.0, "frequency": 0.5}, {"period": 2.0, "wavelength": 6.0}])
+@pytest.mark.parametrize(
+    "given_", [{}, {"period": 2.0, "frequency": 0.5}, {"period": 2.0, "wavelength": 6.0}]
+)
 def test_exactly_one_of_the_three_is_given(given_):
     with pytest.raises(WaterError, match="give exactly one of frequency"):
         RegularWave(0.1, **given_)
@@ -53,12 +55,19 @@ def test_exactly_one_of_the_three_is_given(given_):
 def test_elevation_is_the_sum_of_cosines(seed):
     rng = np.random.default_rng(seed)
     waves = [
-        RegularWave(rng.uniform(0, 1), period=rng.uniform(1, 9), direction=rng.uniform(-3, 3), phase=rng.uniform(-3, 3))
+        RegularWave(
+            rng.uniform(0, 1),
+            period=rng.uniform(1, 9),
+            direction=rng.uniform(-3, 3),
+            phase=rng.uniform(-3, 3),
+        )
     ]
     waves += [LevelOscillation(rng.uniform(0, 1), rng.uniform(0.1, 1), rng.uniform(-3, 3))]
     water = Water(level=rng.uniform(-2, 2), waves=waves)
     x, y, t = rng.uniform(-50, 50, (3, 7))
-    assert water.elevation(x, y, t[0]) == pytest.approx(water.level + naive.elevation(water.rows, x, y, t[0]), abs=1e-12)
+    assert water.elevation(x, y, t[0]) == pytest.approx(
+        water.level + naive.elevation(water.rows, x, y, t[0]), abs=1e-12
+    )
 
 
 def test_a_wave_runs_where_its_direction_points():
@@ -74,7 +83,9 @@ def test_a_level_oscillation_is_an_infinitely_long_wave():
     # shallow water is slow; so deep that the frequency alone makes it long
     wave = Water(waves=RegularWave(0.3, frequency=0.5, phase=0.7, gravity=1e9))
     assert level.elevation(3.0, 4.0, 1.3) == pytest.approx(wave.elevation(3.0, 4.0, 1.3), abs=1e-6)
-    assert level.velocity([3.0, 4.0, -1.0], 1.3)[2] == pytest.approx(wave.velocity([3.0, 4.0, -1.0], 1.3)[2], abs=1e-6)
+    assert level.velocity([3.0, 4.0, -1.0], 1.3)[2] == pytest.approx(
+        wave.velocity([3.0, 4.0, -1.0], 1.3)[2], abs=1e-6
+    )
 
 
 def test_the_level_of_the_source_paper_stays_within_its_bounds():
@@ -88,7 +99,13 @@ def test_the_level_of_the_source_paper_stays_within_its_bounds():
 @pytest.mark.parametrize("depth", [math.inf, 20.0, 1.5])
 def test_the_surface_moves_with_its_water(depth):
     # linear kinematic condition: d eta / dt = w at the still level
-    water = Water(level=0.4, waves=[RegularWave(0.1, period=3.0, depth=depth, direction=0.3), LevelOscillation(0.2, 0.2)])
+    water = Water(
+        level=0.4,
+        waves=[
+            RegularWave(0.1, period=3.0, depth=depth, direction=0.3),
+            LevelOscillation(0.2, 0.2),
+        ],
+    )
     h = 1e-5
     rate = (water.elevation(1.0, 2.0, 0.7 + h) - water.elevation(1.0, 2.0, 0.7 - h)) / (2.0 * h)
     assert water.velocity([1.0, 2.0, 0.4], 0.7)[2] == pytest.approx(float(rate), rel=1e-8)
@@ -98,7 +115,12 @@ def test_the_surface_moves_with_its_water(depth):
 def test_the_orbital_velocity_is_free_of_divergence_and_of_rotation(depth):
     water = Water(waves=RegularWave(0.3, period=3.0, depth=depth, direction=0.8))
     p, h = np.array([1.0, 2.0, -1.5]), 1e-4
-    gradient = np.array([(water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h) for e in np.eye(3)])
+    gradient = np.array(
+        [
+            (water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h)
+            for e in np.eye(3)
+        ]
+    )
     assert np.trace(gradient) == pytest.approx(0.0, abs=1e-8)
     assert gradient == pytest.approx(gradient.T, abs=1e-8)
 
@@ -120,7 +142,9 @@ def test_the_current_adds_to_the_waves():
     still = Water(waves=RegularWave(0.3, period=3.0))
     moving = Water(waves=RegularWave(0.3, period=3.0), current=(0.5, -0.2, 0.0))
     p = np.array([[1.0, 2.0, -0.3], [0.0, 0.0, -5.0]])
-    assert moving.velocity(p, 0.7) - still.velocity(p, 0.7) == pytest.approx(np.tile([0.5, -0.2, 0.0], (2, 1)), abs=1e-15)
+    assert moving.velocity(p, 0.7) - still.velocity(p, 0.7) == pytest.approx(
+        np.tile([0.5, -0.2, 0.0], (2, 1)), abs=1e-15
+    )
 
 
 def test_depth_is_positive_in_the_water():
@@ -138,10 +162,16 @@ def test_depth_is_positive_in_the_water():
             lambda: Water(waves=(3,)),
             "3 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and LevelOscillation",
         ),
-        (lambda: Water(current=(1.0, 2.0)), r"current is \(1.0, 2.0\); it must be three finite numbers"),
+        (
+            lambda: Water(current=(1.0, 2.0)),
+            r"current is \(1.0, 2.0\); it must be three finite numbers",
+        ),
         (lambda: RegularWave(-0.1, period=1.0), "amplitude is -0.1; it must be at least 0"),
         (lambda: RegularWave(0.1, period=-1.0), "period is -1.0; it must be at least 1e-06"),
-        (lambda: RegularWave(0.1, frequency=1e200), r"frequency is 1e\+200; it must be at most 1e\+06"),
+        (
+            lambda: RegularWave(0.1, frequency=1e200),
+            r"frequency is 1e\+200; it must be at most 1e\+06",
+        ),
         (lambda: RegularWave(0.1, period=1e-320), "period is 1e-320; it must be at least 1e-06"),
         (
             lambda: RegularWave(2.0, period=3.0, depth=1.0),
@@ -153,7 +183,10 @@ def test_depth_is_positive_in_the_water():
         ),
         (lambda: Water(current="abc"), "current is 'abc'; it must be three finite numbers"),
         (lambda: Water(level=1e308), r"level is 1e\+308; it must be at most 1e\+06"),
-        (lambda: RegularWave(0.1, period=1.0, depth=0.0), "wave depth is 0.0; it must be at least 1e-06 m"),
+        (
+            lambda: RegularWave(0.1, period=1.0, depth=0.0),
+            "wave depth is 0.0; it must be at least 1e-06 m",
+        ),
         (lambda: LevelOscillation(0.1, 0.0), "frequency is 0.0; it must be at least 1e-06"),
     ],
 )

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 import trimesh
 
-from buoyancy_mj import TriMesh, mended
+from buoyancy_mj import TriMesh, repair
 from buoyancy_mj.meshes.mesh import open_edges
 from tests.naive import trimesh_hull
 
@@ -49,7 +49,9 @@ def dented(seed, size=1.0):
     """A closed mesh that nobody designed: a ball with random dents, stretched at random."""
     rng = np.random.default_rng(seed)
     ball = trimesh.creation.icosphere(subdivisions=2)
-    radii = 1.0 + 0.35 * np.sin(ball.vertices @ rng.normal(0.0, 2.0, (3, 4)) + rng.uniform(0, 6, 4)).mean(axis=1)
+    radii = 1.0 + 0.35 * np.sin(
+        ball.vertices @ rng.normal(0.0, 2.0, (3, 4)) + rng.uniform(0, 6, 4)
+    ).mean(axis=1)
     return TriMesh(ball.vertices * radii[:, None] * rng.uniform(0.4, 1.0, 3) * size, ball.faces)
 
 
@@ -67,27 +69,39 @@ def wigley(length=2.5, beam=0.25, draft=0.15625, freeboard=0.1, stations=200, wa
     count = len(port)
     rim = (np.arange(stations + 1) * (waterlines + 2)) + waterlines + 1
     p, q = rim[:-1], rim[1:]
-    deck = np.vstack([np.column_stack([p, p + count, q]), np.column_stack([q, p + count, q + count])])
+    deck = np.vstack(
+        [np.column_stack([p, p + count, q]), np.column_stack([q, p + count, q + count])]
+    )
     faces = np.vstack([shell, shell[:, ::-1] + count, deck])
-    return mended(np.vstack([port, port * [1.0, -1.0, 1.0]]), faces)[0]
+    return repair(np.vstack([port, port * [1.0, -1.0, 1.0]]), faces)[0]
 
 
 def tanker(freeboard=5.0):
     """The tanker of the MSS toolbox, with straight sides above the water and a deck: vertices and faces, not closed."""
-    lines = gzip.decompress((DATA / "mss_tanker" / "tanker.gdf.gz").read_bytes()).decode().splitlines()
+    lines = (
+        gzip.decompress((DATA / "mss_tanker" / "tanker.gdf.gz").read_bytes()).decode().splitlines()
+    )
     count = int(lines[3])
-    panels = np.array([line.split() for line in lines[4 : 4 + 4 * count]], float).reshape(count, 4, 3)
+    panels = np.array([line.split() for line in lines[4 : 4 + 4 * count]], float).reshape(
+        count, 4, 3
+    )
     panels = np.concatenate([panels, panels[:, ::-1] * [1.0, -1.0, 1.0]])
     corners = np.arange(8 * count).reshape(-1, 4)
     places, index = np.unique(np.round(panels.reshape(-1, 3), 5), axis=0, return_inverse=True)
     faces = index.ravel()[np.vstack([corners[:, :3], corners[:, [0, 2, 3]]])]
-    faces = faces[(faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])]
+    faces = faces[
+        (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    ]
     edges = open_edges(faces)
     a, b = edges[(places[edges, 2] > -1e-6).all(axis=1)].T
     n = len(places)
     vertices = np.vstack([places, places + [0.0, 0.0, freeboard], [[0.0, 0.0, freeboard]]])
     middle = np.full(len(a), 2 * n)
-    walls = [np.column_stack([b, a, a + n]), np.column_stack([b, a + n, b + n]), np.column_stack([b + n, a + n, middle])]
+    walls = [
+        np.column_stack([b, a, a + n]),
+        np.column_stack([b, a + n, b + n]),
+        np.column_stack([b + n, a + n, middle]),
+    ]
     return vertices, np.vstack([faces, *walls])
 
 

@@ -17,27 +17,42 @@ from buoyancy_mj.errors import BuoyancyError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import Scene, read_scene
 
-app = typer.Typer(help="Put water into MuJoCo.", no_args_is_help=True, add_completion=False, rich_markup_mode=None)
+app = typer.Typer(
+    help="Put water into MuJoCo.", no_args_is_help=True, add_completion=False, rich_markup_mode=None
+)
 # what users name may hold brackets
 out, err = Console(markup=False), Console(stderr=True, markup=False)
 
-SCENE = Annotated[str, typer.Argument(help="A scene file (.toml), or the name of one that ships; see 'list'.")]
-VEHICLE = Annotated[str | None, typer.Option(help="Put this vehicle into the scene: MJCF, URDF, or the name of a model.")]
+SCENE = Annotated[
+    str, typer.Argument(help="A scene file (.toml), or the name of one that ships; see 'list'.")
+]
+VEHICLE = Annotated[
+    str | None,
+    typer.Option(help="Put this vehicle into the scene: MJCF, URDF, or the name of a model."),
+]
 SET = Annotated[
-    list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Any field, as water.waves.0.amplitude=0.1.")
+    list[str] | None,
+    typer.Option("--set", metavar="KEY=VALUE", help="Any field, as water.waves.0.amplitude=0.1."),
 ]
-GEOMS = Annotated[list[str] | None, typer.Option(help="Which geoms displace water: name globs ('hull*') or group:N.")]
+GEOMS = Annotated[
+    list[str] | None,
+    typer.Option(help="Which geoms displace water: name globs ('hull*') or group:N."),
+]
 HULL = Annotated[
-    list[str] | None, typer.Option(help="Geoms that displace as their convex hull: 'frame*=convex', or 'convex'.")
+    list[str] | None,
+    typer.Option(help="Geoms that displace as their convex hull: 'frame*=convex', or 'convex'."),
 ]
-FILL = Annotated[list[str] | None, typer.Option(help="Flooded geoms, and the part that displaces: 'frame*=0.1'.")]
+FILL = Annotated[
+    list[str] | None, typer.Option(help="Flooded geoms, and the part that displaces: 'frame*=0.1'.")
+]
 METHOD = Annotated[
-    str | None, typer.Option(help="How the submersion is found: exact (the default), convex_hull or sections.")
+    str | None,
+    typer.Option(help="How the submersion is found: exact (the default), convex_hull or sections."),
 ]
 TIMESTEP = Annotated[float | None, typer.Option(help="MuJoCo's timestep [s].")]
 
 
-def told(command: Callable[..., None]) -> Callable[..., None]:
+def report_errors(command: Callable[..., None]) -> Callable[..., None]:
     """Errors of ours as one sentence and exit status 1; notices as lines on the standard error."""
 
     @wraps(command)
@@ -65,7 +80,7 @@ def _interrupt(*_: Any) -> None:
     raise KeyboardInterrupt
 
 
-def read(
+def read_scene_with_flags(
     path: Path,
     vehicle: str | None,
     duration: float | None,
@@ -75,10 +90,10 @@ def read(
     **words: list[str] | None,
 ) -> Scene:
     """The scene with the flags laid over it."""
-    return read_scene(path, as_settings(vehicle, duration, timestep, given, method, **words))
+    return read_scene(path, flags_as_settings(vehicle, duration, timestep, given, method, **words))
 
 
-def as_settings(
+def flags_as_settings(
     vehicle: str | None,
     duration: float | None,
     timestep: float | None,
@@ -88,7 +103,9 @@ def as_settings(
 ) -> list[str]:
     """The flags as settings."""
     # first, so that settings may reach the method's options
-    over = [f"method={{kind={json.dumps(method, ensure_ascii=False)}}}"] if method is not None else []
+    over = (
+        [f"method={{kind={json.dumps(method, ensure_ascii=False)}}}"] if method is not None else []
+    )
     over += given or []
     if vehicle is not None:
         # relative to where the user stands, not to the scene
@@ -98,16 +115,20 @@ def as_settings(
         over.append(f"duration={duration}")
     if timestep is not None:
         over.append(f"timestep={timestep}")
-    return over + [f"{name}={json.dumps(chosen, ensure_ascii=False)}" for name, chosen in words.items() if chosen]
+    return over + [
+        f"{name}={json.dumps(chosen, ensure_ascii=False)}"
+        for name, chosen in words.items()
+        if chosen
+    ]
 
 
-def rerun() -> str:
+def viewer_command() -> str:
     """The viewer's command, from the same environment."""
     beside = Path(sys.executable).with_name("rerun")
-    return quoted(beside) if beside.exists() else "rerun"
+    return quote(beside) if beside.exists() else "rerun"
 
 
-def quoted(path: Path) -> str:
+def quote(path: Path) -> str:
     """A path as a shell takes it."""
     text = str(path)
     return f"'{text}'" if " " in text else text

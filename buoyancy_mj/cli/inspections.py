@@ -9,32 +9,55 @@ import mujoco
 import typer
 
 from buoyancy_mj import ballast as ballasts
-from buoyancy_mj.cli.common import FILL, GEOMS, HULL, app, err, out, quoted, rerun, told
+from buoyancy_mj.cli.common import (
+    FILL,
+    GEOMS,
+    HULL,
+    app,
+    err,
+    out,
+    quote,
+    report_errors,
+    viewer_command,
+)
 from buoyancy_mj.errors import ModelError, SceneError
-from buoyancy_mj.hulls.mjcf import with_meshes, written
+from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.inspection import report
-from buoyancy_mj.inspection.inspection import Inspection, inspected
+from buoyancy_mj.inspection.inspection import Inspection, inspect_model
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.assembly import compiled, vehicle_spec
+from buoyancy_mj.scenes.assembly import compile_spec, read_vehicle
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.settings import water_from_table
 
 _MODEL = Annotated[str, typer.Argument(help="MJCF, URDF, or the name of a model that ships.")]
 _WATER = Annotated[
-    list[str] | None, typer.Option(metavar="KEY=VALUE", help="The still water: density=1025 [kg/m^3], level=0.2 [m].")
+    list[str] | None,
+    typer.Option(
+        metavar="KEY=VALUE", help="The still water: density=1025 [kg/m^3], level=0.2 [m]."
+    ),
 ]
 
 
 @app.command("inspect")
-@told
+@report_errors
 def inspect_(
     model: _MODEL,
     water: _WATER = None,
-    as_json: Annotated[bool, typer.Option("--json", help="All of it as JSON on the standard output, nothing else.")] = False,
-    plot: Annotated[Path | None, typer.Option(metavar="DIR", help="Draw plots into this folder, with report.md.")] = None,
-    record: Annotated[Path | None, typer.Option(help="Hulls, waterplane and centres as a recording (.rrd).")] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="All of it as JSON on the standard output, nothing else.")
+    ] = False,
+    plot: Annotated[
+        Path | None,
+        typer.Option(metavar="DIR", help="Draw plots into this folder, with report.md."),
+    ] = None,
+    record: Annotated[
+        Path | None, typer.Option(help="Hulls, waterplane and centres as a recording (.rrd).")
+    ] = None,
     repair: Annotated[
-        Path | None, typer.Option(metavar="OUT.xml", help="Write the model with its meshes mended, where that is safe.")
+        Path | None,
+        typer.Option(
+            metavar="OUT.xml", help="Write the model with its meshes mended, where that is safe."
+        ),
     ] = None,
     geoms: GEOMS = None,
     hull: HULL = None,
@@ -44,42 +67,60 @@ def inspect_(
     if record is not None and record.suffix != ".rrd":
         raise SceneError(f"--record is '{record}'; a recording's name ends in .rrd")
     path = catalog.model_path(model)
-    spec = vehicle_spec(path)
-    whole = compiled(spec, path)
+    spec = read_vehicle(path)
+    whole = compile_spec(spec, path)
     with err.status("inspecting"):
-        found = inspected(whole, _water(water), geoms=geoms, hull=hull, fill=fill, title=path.stem)
+        found = inspect_model(
+            whole, _water(water), geoms=geoms, hull=hull, fill=fill, title=path.stem
+        )
     if as_json:
-        print(json.dumps(report.plain(found), indent=2, allow_nan=False))
+        print(json.dumps(report.to_json(found), indent=2, allow_nan=False))
     else:
-        out.print(report.renderable(found))
+        out.print(report.to_tables(found))
     # what is written is told on the standard error, lest it stand in the JSON
     if plot is not None:
-        err.print(f"plots and report: {quoted(_plotted(found, plot))}", highlight=False, soft_wrap=True)
+        err.print(
+            f"plots and report: {quote(_plotted(found, plot))}", highlight=False, soft_wrap=True
+        )
     if record is not None:
-        from buoyancy_mj.viz.inspection import recorded
+        from buoyancy_mj.viz.inspection import record_inspection
 
-        err.print(f"open the recording: {rerun()} {quoted(recorded(found, record))}", highlight=False, soft_wrap=True)
+        err.print(
+            f"open the recording: {viewer_command()} {quote(record_inspection(found, record))}",
+            highlight=False,
+            soft_wrap=True,
+        )
     if repair is not None:
         _repair(spec, whole, found, repair)
-    if any(part.taken and part.mesh is None for part in found.parts):
+    if any(part.displaces and part.mesh is None for part in found.parts):
         raise typer.Exit(1)
 
 
 @app.command("ballast")
-@told
+@report_errors
 def ballast_(
     model: _MODEL,
-    out_file: Annotated[Path | None, typer.Option("--out", help="Write the ballasted vehicle here, as MJCF.")] = None,
+    out_file: Annotated[
+        Path | None, typer.Option("--out", help="Write the ballasted vehicle here, as MJCF.")
+    ] = None,
     draft: Annotated[float | None, typer.Option(help="Wanted draft [m], floating; or")] = None,
-    reserve: Annotated[float | None, typer.Option(help="wanted lift left under water [kg], 0 for neutral.")] = None,
+    reserve: Annotated[
+        float | None, typer.Option(help="wanted lift left under water [kg], 0 for neutral.")
+    ] = None,
     heel: Annotated[float, typer.Option(help="Wanted heel [rad].")] = 0.0,
     trim: Annotated[float, typer.Option(help="Wanted trim, bow down [rad].")] = 0.0,
     bg: Annotated[float | None, typer.Option(help="Wanted height of B over G [m].")] = None,
-    masses: Annotated[list[str] | None, typer.Option(help="Sites that may take ballast: globs; 'ballast*'.")] = None,
-    foam: Annotated[list[str] | None, typer.Option(help="Sites that may take foam: globs; 'foam*'.")] = None,
+    masses: Annotated[
+        list[str] | None, typer.Option(help="Sites that may take ballast: globs; 'ballast*'.")
+    ] = None,
+    foam: Annotated[
+        list[str] | None, typer.Option(help="Sites that may take foam: globs; 'foam*'.")
+    ] = None,
     box: Annotated[
         tuple[float, float, float, float, float, float] | None,
-        typer.Option(help="Ballast anywhere between two corners instead, in the frame of the root body [m]."),
+        typer.Option(
+            help="Ballast anywhere between two corners instead, in the frame of the root body [m]."
+        ),
     ] = None,
     water: _WATER = None,
     geoms: GEOMS = None,
@@ -88,15 +129,18 @@ def ballast_(
 ) -> None:
     """Find the least ballast and foam for a draft and attitude, or for neutral buoyancy."""
     path = catalog.model_path(model)
-    spec = vehicle_spec(path)
+    spec = read_vehicle(path)
     found = ballasts(
-        compiled(spec, path), _water(water), draft=draft, reserve=reserve, heel=heel, trim=trim, bg=bg,
+        compile_spec(spec, path), _water(water), draft=draft, reserve=reserve, heel=heel, trim=trim, bg=bg,
         masses=[box[:3], box[3:]] if box is not None else masses or "ballast*", foam=foam or "foam*",
         geoms=geoms, hull=hull, fill=fill,
     )  # fmt: skip
     for one in found.placed:
         x, y, z = one.position.round(6) + 0.0
-        out.print(f"{one.label}: {one.mass:.4g} kg of {one.kind} at ({x:.4g}, {y:.4g}, {z:.4g}) m", highlight=False)
+        out.print(
+            f"{one.label}: {one.mass:.4g} kg of {one.kind} at ({x:.4g}, {y:.4g}, {z:.4g}) m",
+            highlight=False,
+        )
     at = found.hydrostatics
     out.print(
         f"{found.mass:.4g} kg added, {at.mass:.4g} kg in all; draft {at.draft:.4g} m, BG {at.BG:.4g} m, GM {at.GM:.4g} m, "
@@ -106,7 +150,7 @@ def ballast_(
     )
     if out_file is not None:
         found.add_to(spec)
-        out.print(f"written: {quoted(written(spec, out_file))}", highlight=False, soft_wrap=True)
+        out.print(f"written: {quote(write_mjcf(spec, out_file))}", highlight=False, soft_wrap=True)
 
 
 def _water(words: list[str] | None) -> Water:
@@ -114,14 +158,16 @@ def _water(words: list[str] | None) -> Water:
     try:
         table = tomllib.loads("\n".join(words or []))
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"--water {' '.join(words or [])}: {error}; write KEY=VALUE, as in density=1025") from error
+        raise SceneError(
+            f"--water {' '.join(words or [])}: {error}; write KEY=VALUE, as in density=1025"
+        ) from error
     return water_from_table(table, "--water")
 
 
 def _plotted(found: Inspection, folder: Path) -> Path:
     """Pictures and the report beside them."""
     try:
-        from buoyancy_mj.inspection.charts import drawn
+        from buoyancy_mj.inspection.charts import draw_charts
     except ModuleNotFoundError as error:
         if error.name is None or not error.name.startswith("matplotlib"):
             raise
@@ -130,10 +176,12 @@ def _plotted(found: Inspection, folder: Path) -> Path:
         ) from error
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        pictures = [(caption, file.name) for caption, file in drawn(found, folder)]
-        (folder / "report.md").write_text(report.markdown(found, pictures))
+        pictures = [(caption, file.name) for caption, file in draw_charts(found, folder)]
+        (folder / "report.md").write_text(report.to_markdown(found, pictures))
     except OSError as error:
-        raise ModelError(f"cannot write into '{folder}': {error.strerror}; choose another folder (--plot)") from error
+        raise ModelError(
+            f"cannot write into '{folder}': {error.strerror}; choose another folder (--plot)"
+        ) from error
     return folder
 
 
@@ -142,16 +190,21 @@ def _repair(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection, path:
     mended = {}
     for part, geom in zip(found.parts, range(model.ngeom), strict=True):
         was = part.diagnosis
-        if was is not None and was.mesh is not None and was.mended:
+        if was is not None and was.mesh is not None and was.repaired:
             asset = int(model.geom_dataid[geom])
             if asset in mended:
                 continue
             mended[asset] = was.mesh
             change = was.mesh.volume - was.volume_as_is
-            told = f"mended {was.name}: {was.mesh.volume:.4g} m^3, {change:+.3g} m^3 against as it was"
+            told = (
+                f"mended {was.name}: {was.mesh.volume:.4g} m^3, {change:+.3g} m^3 against as it was"
+            )
             err.print(told, highlight=False, soft_wrap=True)
     if not mended:
-        err.print("no mesh was mended: none needs it, or what does cannot be mended safely", highlight=False)
+        err.print(
+            "no mesh was mended: none needs it, or what does cannot be mended safely",
+            highlight=False,
+        )
         return
-    place = written(with_meshes(spec, model, mended, path.parent / f"{path.stem}_meshes"), path)
-    err.print(f"written: {quoted(place)}", highlight=False, soft_wrap=True)
+    place = write_mjcf(embed_meshes(spec, model, mended, path.parent / f"{path.stem}_meshes"), path)
+    err.print(f"written: {quote(place)}", highlight=False, soft_wrap=True)

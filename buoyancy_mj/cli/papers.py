@@ -8,23 +8,32 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from buoyancy_mj.cli.common import app, err, quoted, told
+from buoyancy_mj.cli.common import app, err, quote, report_errors
 from buoyancy_mj.cli.common import out as console
 from buoyancy_mj.paper.study import Study
 
 
 @app.command()
-@told
+@report_errors
 def paper(
-    only: Annotated[list[str] | None, typer.Option(help="Only these studies; a wrong name lists them.")] = None,
+    only: Annotated[
+        list[str] | None, typer.Option(help="Only these studies; a wrong name lists them.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Where tables and pictures go.")] = Path("docs/paper"),
-    quick: Annotated[bool, typer.Option("--quick", help="Coarse and short, to see that it runs.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Coarse and short, to see that it runs.")
+    ] = False,
 ) -> None:
     """Reproduce the source paper: its figures, and what holds of its claims."""
     from buoyancy_mj.paper import report, studies  # need matplotlib, which 'run' does not
 
     total = len(set(only)) if only else len(studies.STUDIES)
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
     with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
         task = progress.add_task("", total=total)
 
@@ -39,4 +48,4 @@ def paper(
     for row in rows:
         table.add_row(*row)
     console.print(table)
-    console.print(f"tables and pictures: {quoted(out)}", highlight=False, soft_wrap=True)
+    console.print(f"tables and pictures: {quote(out)}", highlight=False, soft_wrap=True)

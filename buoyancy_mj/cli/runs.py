@@ -24,10 +24,10 @@ from buoyancy_mj.cli.common import (
     app,
     err,
     out,
-    quoted,
-    read,
-    rerun,
-    told,
+    quote,
+    read_scene_with_flags,
+    report_errors,
+    viewer_command,
 )
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
@@ -37,22 +37,29 @@ from buoyancy_mj.scenes.simulation import Simulation
 
 
 @app.command()
-@told
+@report_errors
 def run(
     scene: SCENE,
     vehicle: VEHICLE = None,
     duration: Annotated[float | None, typer.Option(help="Simulated time [s].")] = None,
     timestep: TIMESTEP = None,
     method: METHOD = None,
-    record: Annotated[Path | None, typer.Option(help="Where to record; otherwise recordings/SCENE.rrd.")] = None,
-    no_record: Annotated[bool, typer.Option("--no-record", help="Do not record to a file.")] = False,
-    live: Annotated[bool, typer.Option("--live", help="Stream to a Rerun viewer while it runs.")] = False,
+    record: Annotated[
+        Path | None, typer.Option(help="Where to record; otherwise recordings/SCENE.rrd.")
+    ] = None,
+    no_record: Annotated[
+        bool, typer.Option("--no-record", help="Do not record to a file.")
+    ] = False,
+    live: Annotated[
+        bool, typer.Option("--live", help="Stream to a Rerun viewer while it runs.")
+    ] = False,
     settings: SET = None,
     geoms: GEOMS = None,
     hull: HULL = None,
     fill: FILL = None,
     as_json: Annotated[
-        bool, typer.Option("--json", help="The summary as JSON on the standard output, nothing else.")
+        bool,
+        typer.Option("--json", help="The summary as JSON on the standard output, nothing else."),
     ] = False,
 ) -> None:
     """Run a scene headless, record it and sum it up."""
@@ -61,14 +68,19 @@ def run(
     if record is not None and record.suffix != ".rrd":
         raise SceneError(f"--record is '{record}'; a recording's name ends in .rrd")
     path = catalog.scene_path(scene)
-    chosen = read(path, vehicle, duration, timestep, settings, method, geoms=geoms, hull=hull, fill=fill)
-    with err.status("preparing (the first run after an installation compiles, which takes some seconds)"):
+    chosen = read_scene_with_flags(
+        path, vehicle, duration, timestep, settings, method, geoms=geoms, hull=hull, fill=fill
+    )
+    with err.status(
+        "preparing (the first run after an installation compiles, which takes some seconds)"
+    ):
         simulation = Simulation(chosen)
     target = None if no_record else record or Path("recordings") / f"{path.stem}.rrd"
     summary, file = _recorded(simulation, target, live=live)
     if as_json:
         plain = {
-            k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in dataclasses.asdict(summary).items()
+            k: None if isinstance(v, float) and not math.isfinite(v) else v
+            for k, v in dataclasses.asdict(summary).items()
         }
         print(json.dumps(plain | {"recording": str(file) if file else None}, indent=2))
         return
@@ -77,25 +89,29 @@ def run(
         table.add_row(name, value)
     out.print(table)
     if file is not None:
-        out.print(f"open the recording: {rerun()} {quoted(file)}", highlight=False, soft_wrap=True)
+        out.print(
+            f"open the recording: {viewer_command()} {quote(file)}", highlight=False, soft_wrap=True
+        )
 
 
 @app.command("list")
-@told
+@report_errors
 def list_() -> None:
     """List the scenes and models that ship."""
     for title, rows in (
         ("scenes", {name: read_scene(path).title for name, path in catalog.scenes().items()}),
         ("models", {name: catalog.summary(path) for name, path in catalog.models().items()}),
     ):
-        table = Table(title=title, show_header=False, title_justify="left", box=None, padding=(0, 2))
+        table = Table(
+            title=title, show_header=False, title_justify="left", box=None, padding=(0, 2)
+        )
         for name, line in rows.items():
             table.add_row(name, line)
         out.print(table)
 
 
 @app.command()
-@told
+@report_errors
 def view(
     scene: SCENE,
     vehicle: VEHICLE = None,
@@ -111,12 +127,24 @@ def view(
 
     show(
         Simulation(
-            read(catalog.scene_path(scene), vehicle, None, timestep, settings, method, geoms=geoms, hull=hull, fill=fill)
+            read_scene_with_flags(
+                catalog.scene_path(scene),
+                vehicle,
+                None,
+                timestep,
+                settings,
+                method,
+                geoms=geoms,
+                hull=hull,
+                fill=fill,
+            )
         )
     )
 
 
-def _recorded(simulation: Simulation, target: Path | None, *, live: bool) -> tuple[Summary, Path | None]:
+def _recorded(
+    simulation: Simulation, target: Path | None, *, live: bool
+) -> tuple[Summary, Path | None]:
     """Run to the end, recording as asked; a run that breaks off says what it leaves."""
     if target is None and not live:
         with _progress(simulation) as advance:
@@ -144,7 +172,9 @@ def _recorded(simulation: Simulation, target: Path | None, *, live: bool) -> tup
 
 def _left(file: Path | None, time: float) -> None:
     if file is not None:
-        err.print(f"the recording up to {time:.2f} s is in '{file}'", highlight=False, soft_wrap=True)
+        err.print(
+            f"the recording up to {time:.2f} s is in '{file}'", highlight=False, soft_wrap=True
+        )
 
 
 @contextmanager

@@ -8,21 +8,30 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from buoyancy_mj.cli.common import app, err, quoted, told
+from buoyancy_mj.cli.common import app, err, quote, report_errors
 from buoyancy_mj.cli.common import out as console
 
 
 @app.command()
-@told
+@report_errors
 def validate(
-    only: Annotated[list[str] | None, typer.Option(help="Only these cases; a wrong name lists them.")] = None,
-    out: Annotated[Path, typer.Option(help="Where validation.md and its pictures go, if all cases run.")] = Path("docs"),
+    only: Annotated[
+        list[str] | None, typer.Option(help="Only these cases; a wrong name lists them.")
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(help="Where validation.md and its pictures go, if all cases run.")
+    ] = Path("docs"),
 ) -> None:
     """Hold the physics against published experiments, benchmarks and closed forms."""
     from buoyancy_mj.validation import report  # needs matplotlib, which 'run' does not
     from buoyancy_mj.validation.case import Case
 
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+    )
     with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
         task = progress.add_task("", total=len(set(only)) if only else len(report.CASES))
 
@@ -41,4 +50,4 @@ def validate(
     rows = [row for case in found.values() for row in case]
     console.print(f"{sum(row.passes for row in rows)} of {len(rows)} rows hold", highlight=False)
     if not only:
-        console.print(f"page: {quoted(out / 'validation.md')}", highlight=False, soft_wrap=True)
+        console.print(f"page: {quote(out / 'validation.md')}", highlight=False, soft_wrap=True)

@@ -12,20 +12,20 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.engine import callbacks, passes
-from buoyancy_mj.engine.load_model import Acting
+from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.engine.native import Native, Record
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, MethodError, ModelError, choices
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.kernels.entries.passive import Pressure
-from buoyancy_mj.loads.added_mass import added_masses
-from buoyancy_mj.loads.drag import Drag, estimated
+from buoyancy_mj.loads.added_mass import resolve_added_mass
+from buoyancy_mj.loads.drag import Drag, resolve_damping
 from buoyancy_mj.loads.loads import Loads, Portion
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
-from buoyancy_mj.submersion.methods import Method, method_of
+from buoyancy_mj.submersion.methods import Method, parse_method
 
 
 class Buoyancy:
@@ -42,7 +42,7 @@ class Buoyancy:
     Args:
         model: any MuJoCo model with bodies that move.
         water: fresh and still at z = 0 if None.
-        geoms: which geoms displace water, see `geoms.displacing_hulls`.
+        geoms: which geoms displace water, see `hulls.find_hulls`.
         hull: which of them as their convex hull, likewise.
         fill: and which flood, and displace in part, likewise.
         bodies: indices of the bodies whose geoms may; None for all.
@@ -80,17 +80,17 @@ class Buoyancy:
         self.model = model
         self.water = water or Water()
         self.drag = drag
-        self.method = method_of(method)
-        self.pressure = pressure_of(pressure, self.method)
+        self.method = parse_method(method)
+        self.pressure = parse_pressure(pressure, self.method)
         callbacks.refuse_actuation(model)
         _refuse_sleep(model)
         _ = self.gravity
-        self.hulls = displacing_hulls(model, geoms, bodies, hull=hull, fill=fill)
+        self.hulls = find_hulls(model, geoms, bodies, hull=hull, fill=fill)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
         frames = [hull.geom for hull in self.hulls]
         turns = [hull.body_from_geom for hull in self.hulls]
-        self.packed = self.method.packed(
+        self.packed = self.method.pack(
             [hull.mesh for hull in self.hulls],
             frames,
             self._owners,
@@ -99,18 +99,24 @@ class Buoyancy:
             [hull.fill for hull in self.hulls],
         )
         _doubt(model, self.water, self.hulls)
-        self.added_mass = added_masses(model, self.hulls, self.water.density, added_mass)
+        self.added_mass = resolve_added_mass(model, self.hulls, self.water.density, added_mass)
         """Added mass of those bodies that have one."""
-        damping = estimated(drag, model, self.hulls, self.water.density) if drag else None
+        damping = resolve_damping(drag, model, self.hulls, self.water.density) if drag else None
         if damping is not None and len(damping.panels) and not isinstance(self.method, Exact):
-            raise MethodError(f"drag by panels needs the method 'exact', not '{self.method.name}', which knows no triangles")
-        self._acting = Acting(self.water, self.packed, self._owners, self.pressure, damping, self.added_mass)
+            raise MethodError(
+                f"drag by panels needs the method 'exact', not '{self.method.name}', which knows no triangles"
+            )
+        self._acting = LoadModel(
+            self.water, self.packed, self._owners, self.pressure, damping, self.added_mass
+        )
         self.causes = self._acting.causes
         """Names of the loads that act."""
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
         roots = set(model.body_rootid[self.bodies].tolist())
-        self.floating = np.array([body for body in range(model.nbody) if model.body_rootid[body] in roots])
+        self.floating = np.array(
+            [body for body in range(model.nbody) if model.body_rootid[body] in roots]
+        )
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
         # what a step writes to; threads that share this object take turns
         self._looked, self._record = self.record(), self.record()
@@ -124,11 +130,13 @@ class Buoyancy:
         Another model than the own one is left alone, and so are all while the water is `installed`.
         A second call in the same pass replaces the first.
         """
-        if model._address == self.model._address and not callbacks.acts(self):
+        if model._address == self.model._address and not callbacks.is_lent(self):
             self.act(data)
 
     @contextlib.contextmanager
-    def installed(self, native: bool | None = None, *, copies: bool = False) -> Iterator["Buoyancy"]:
+    def installed(
+        self, native: bool | None = None, *, copies: bool = False
+    ) -> Iterator["Buoyancy"]:
         """Lend itself to MuJoCo; the callback that was there still runs, and comes back at the end.
 
         It is lent as `mjcb_passive`, which MuJoCo calls once in each pass, in `mj_inverse` and for
@@ -146,7 +154,7 @@ class Buoyancy:
             ModelError: actuation has been disabled.
             EngineError: `native` or `copies` is asked for and cannot be; the message says why.
         """
-        with callbacks.lent(self, native, copies=copies):
+        with callbacks.lend(self, native, copies=copies):
             yield self
 
     def act(self, data: mujoco.MjData) -> None:
@@ -159,8 +167,8 @@ class Buoyancy:
             if data._address == self._last_data and np.array_equal(passive, self._after):
                 passive[:] = self._before
             self._before[:] = passive
-            if self._acting.is_heavy:
-                passes.make_heavier(self._acting, self.model, data, record)
+            if self._acting.has_added_mass:
+                passes.add_inertia(self._acting, self.model, data, record)
             wrenches.project(
                 record.total,
                 self.bodies,
@@ -197,7 +205,10 @@ class Buoyancy:
             if record is None and self._last_data == data._address:
                 record = self._record
             # a pass lies no more than a step back; what is older was of other data in the same place
-            if record is None or not abs(data.time - record.instant[0]) <= 1.001 * self.model.opt.timestep:
+            if (
+                record is None
+                or not abs(data.time - record.instant[0]) <= 1.001 * self.model.opt.timestep
+            ):
                 raise EngineError(
                     f"this water has not acted on these data at their time, {data.time:g} s; step them while it acts, "
                     "call mj_forward, or use evaluate"
@@ -209,7 +220,7 @@ class Buoyancy:
         wet, centres, rows = record.results.copy(), record.centres.copy(), record.total.copy()
         xipos = data.xipos
         weight = self.water.density * self.gravity
-        if self._acting.presses:
+        if self._acting.has_wave_pressure:
             force, about = weight * record.heads[:, :3], weight * record.heads[:, 3:]
             origins = data.geom_xpos[[hull.geom for hull in self.hulls]]
             torque = about + np.cross(origins - xipos[self._owners], force)
@@ -223,7 +234,9 @@ class Buoyancy:
         everything = np.empty((1, 4))
         wrenches.merge(wet, np.zeros(len(wet), np.int64), everything)
         torque = body.torque + np.cross(xipos - self.centre_of_mass(data), body.force)
-        total = Portion(everything[0, 0], everything[0, 1:], body.force.sum(axis=0), torque.sum(axis=0))
+        total = Portion(
+            everything[0, 0], everything[0, 1:], body.force.sum(axis=0), torque.sum(axis=0)
+        )
         return Loads(
             names=tuple(hull.name for hull in self.hulls),
             hull=hull,
@@ -253,7 +266,9 @@ class Buoyancy:
         return masses @ data.xipos[self.floating] / masses.sum()
 
     def _evaluate(self, data: mujoco.MjData, run: int, record: Record) -> None:
-        passes.evaluate(self._acting, self.model, data, self.water.density * self.gravity, run, record)
+        passes.evaluate(
+            self._acting, self.model, data, self.water.density * self.gravity, run, record
+        )
 
     @property
     def gravity(self) -> float:
@@ -266,11 +281,13 @@ class Buoyancy:
         if self.model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
             return 0.0
         if x != 0.0 or y != 0.0 or z > 0.0:
-            raise ModelError(f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: set <option gravity='0 0 -9.81'/>")
+            raise ModelError(
+                f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: set <option gravity='0 0 -9.81'/>"
+            )
         return -float(z)
 
 
-def pressure_of(name: str, method: Method) -> Pressure:
+def parse_pressure(name: str, method: Method) -> Pressure:
     """The kind of pressure of a name.
 
     Raises:
@@ -280,7 +297,9 @@ def pressure_of(name: str, method: Method) -> Pressure:
     if name not in kinds:
         raise MethodError(f"pressure is '{name}'; {choices(name, kinds)}")
     if kinds[name] != Pressure.archimedes and not isinstance(method, Exact):
-        raise MethodError(f"pressure '{name}' needs the method 'exact', not '{method.name}', which knows volumes alone")
+        raise MethodError(
+            f"pressure '{name}' needs the method 'exact', not '{method.name}', which knows volumes alone"
+        )
     return kinds[name]
 
 
@@ -295,7 +314,10 @@ def _doubt(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
             continue
         together = [hull for hull in hulls if model.body_rootid[hull.body] == root]
         # what it must displace, over no more than half the area of its hulls: Cauchy
-        volume = min(float(model.body_subtreemass[root]) / water.density, sum(hull.displacement for hull in together))
+        volume = min(
+            float(model.body_subtreemass[root]) / water.density,
+            sum(hull.displaced_volume for hull in together),
+        )
         least = volume / (0.5 * sum(hull.mesh.area for hull in together))
         if least > shallowest:
             raise ModelError(

@@ -8,18 +8,18 @@ from typing import Any, Protocol
 import mujoco
 
 from buoyancy_mj.engine import layout
-from buoyancy_mj.engine.native import Native, address
+from buoyancy_mj.engine.native import Native, address_of
 from buoyancy_mj.errors import EngineError, ModelError
 from buoyancy_mj.kernels.entries.closures import Closure
 
 PLUGIN = "buoyancy_mj.water"
 """Name of the engine plugin by which a model brings its own water, see `plugin`."""
 _ENGINE_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
-_acting: dict[int, tuple["Lent", ...]] = {}
+_lent: dict[int, tuple["Lendable", ...]] = {}
 """What acts in a callback, by the identity of the callback, while it is lent."""
 
 
-class Lent(Protocol):
+class Lendable(Protocol):
     """Water that can act as a callback."""
 
     model: mujoco.MjModel
@@ -35,7 +35,7 @@ class Lent(Protocol):
 
 
 @contextlib.contextmanager
-def lent(water: Lent, native: bool | None, *, copies: bool) -> Iterator[None]:
+def lend(water: Lendable, native: bool | None, *, copies: bool) -> Iterator[None]:
     """Lend `water` to MuJoCo, see `Buoyancy.installed`."""
     refuse_actuation(water.model)
     if plugin_instances(water.model):
@@ -43,7 +43,7 @@ def lent(water: Lent, native: bool | None, *, copies: bool) -> Iterator[None]:
             f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would double it: "
             "leave out the one or the other"
         )
-    if acts(water):
+    if is_lent(water):
         yield
         return
     slot = "control" if skips_passive(water.model.opt.disableflags) else "passive"
@@ -51,19 +51,19 @@ def lent(water: Lent, native: bool | None, *, copies: bool) -> Iterator[None]:
     lend = getattr(mujoco, f"set_mjcb_{slot}")
     closure = _compiled(water, slot, previous, native, copies=copies)
     callback = _in_python(water, previous) if closure is None else _ENGINE_FUNCTION(closure.address)
-    _acting[id(callback)] = (*_acting.get(id(previous), ()), water)
+    _lent[id(callback)] = (*_lent.get(id(previous), ()), water)
     lend(callback)
     try:
         yield
     finally:
         lend(previous)
-        del _acting[id(callback)]
+        del _lent[id(callback)]
 
 
-def acts(water: Lent) -> bool:
+def is_lent(water: Lendable) -> bool:
     """Whether it is lent, and MuJoCo would call it now."""
     now = mujoco.get_mjcb_passive(), mujoco.get_mjcb_control()
-    return any(water is other for callback in now for other in _acting.get(id(callback), ()))
+    return any(water is other for callback in now for other in _lent.get(id(callback), ()))
 
 
 def plugin_instances(model: mujoco.MjModel) -> list[int]:
@@ -94,25 +94,31 @@ def refuse_actuation(model: mujoco.MjModel) -> None:
         )
 
 
-def _compiled(water: Lent, slot: str, previous: Any, native: bool | None, *, copies: bool) -> Closure | None:
+def _compiled(
+    water: Lendable, slot: str, previous: Any, native: bool | None, *, copies: bool
+) -> Closure | None:
     """The callback as a C function; None where it is not wanted, or cannot be and need not."""
     try:
         if native is False:
             raise EngineError("native=False asks for a callback in Python")
         if slot == "control":
-            raise EngineError("the model disables springs and dampers, and MuJoCo then skips its passive forces")
+            raise EngineError(
+                "the model disables springs and dampers, and MuJoCo then skips its passive forces"
+            )
         if previous is not None and not hasattr(previous, "argtypes"):
             raise EngineError("a callback in Python is installed as mjcb_passive; remove it first")
-        return water.native.callback(0 if previous is None else address(previous), copies=copies)
+        return water.native.callback(0 if previous is None else address_of(previous), copies=copies)
     except EngineError as error:
         if native:
             raise EngineError(f"the water cannot act as compiled code: {error}") from error
         if copies:
-            raise EngineError(f"copies of a model are known to compiled code alone: {error}") from error
+            raise EngineError(
+                f"copies of a model are known to compiled code alone: {error}"
+            ) from error
         return None
 
 
-def _in_python(water: Lent, previous: Any) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
+def _in_python(water: Lendable, previous: Any) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
     """The callback in Python: first the one that was there before, then the water on its own model."""
 
     def callback(model: mujoco.MjModel, data: mujoco.MjData) -> None:

@@ -60,7 +60,11 @@ def content(path: str, address: int) -> bytes:
     """A copy of the array that a pointer field, as 'mjModel.geom_size', of the struct at an address points to."""
     size, extent = _pointed(path)
     for n in extent:
-        size *= n if isinstance(n, int) else ctypes.c_int64.from_address(address + offset(f"{path.split('.')[0]}.{n}")).value
+        size *= (
+            n
+            if isinstance(n, int)
+            else ctypes.c_int64.from_address(address + offset(f"{path.split('.')[0]}.{n}")).value
+        )
     return ctypes.string_at(word(address + offset(path)), size) if size else b""
 
 
@@ -150,7 +154,11 @@ def _no_callbacks() -> Iterator[None]:
 def _library() -> ctypes.CDLL:
     """MuJoCo's library, the one that its Python package has loaded."""
     folder = Path(mujoco.__file__).parent
-    found = [path for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll") for path in folder.glob(pattern)]
+    found = [
+        path
+        for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll")
+        for path in folder.glob(pattern)
+    ]
     if not found:
         raise EngineError(f"there is no MuJoCo library in '{folder}'; {_MEND}")
     return ctypes.CDLL(str(found[0]))
@@ -169,7 +177,11 @@ def _struct(name: str) -> Any:
 
 
 def _structure(name: str, fields: Sequence[Any]) -> Any:
-    return type(name, (ctypes.Structure,), {"_fields_": [(field.name, _type(field.type, name)) for field in fields]})
+    return type(
+        name,
+        (ctypes.Structure,),
+        {"_fields_": [(field.name, _type(field.type, name)) for field in fields]},
+    )
 
 
 def _type(declared: Any, owner: str) -> Any:
@@ -177,12 +189,18 @@ def _type(declared: Any, owner: str) -> Any:
     if isinstance(declared, ast_nodes.PointerType):
         return ctypes.c_void_p
     if isinstance(declared, ast_nodes.ArrayType):
-        return functools.reduce(lambda kind, n: kind * n, reversed(declared.extents), _type(declared.inner_type, owner))
-    if isinstance(declared, ast_nodes.AnonymousStructDecl) and not isinstance(declared, ast_nodes.AnonymousUnionDecl):
+        return functools.reduce(
+            lambda kind, n: kind * n, reversed(declared.extents), _type(declared.inner_type, owner)
+        )
+    if isinstance(declared, ast_nodes.AnonymousStructDecl) and not isinstance(
+        declared, ast_nodes.AnonymousUnionDecl
+    ):
         return _structure("struct", declared.fields)
     name = getattr(declared, "name", "union")
     if name in structs.STRUCTS:
         return _struct(name)
     if name not in _TYPES:
-        raise EngineError(f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; {_MEND}")
+        raise EngineError(
+            f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; {_MEND}"
+        )
     return _TYPES[name]

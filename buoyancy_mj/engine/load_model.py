@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.kernels.entries.passive import Pressure
 from buoyancy_mj.loads.added_mass import AddedMass
-from buoyancy_mj.loads.drag import Damping
+from buoyancy_mj.loads.drag import DampingArrays
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.methods import Packed
 
@@ -17,7 +17,7 @@ CAUSES = ("buoyancy", "wave_pressure", "drag", "radiation", "added_mass")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Acting:
+class LoadModel:
     """What the water does to the bodies of one model."""
 
     water: Water
@@ -28,7 +28,7 @@ class Acting:
     """The body of each (h,)."""
     pressure: Pressure
     """What the pressure in waves is taken for."""
-    damping: Damping | None
+    damping: DampingArrays | None
     """Drag of the bodies; None for none."""
     added: AddedMass
     """Added mass of those that have one."""
@@ -40,17 +40,17 @@ class Acting:
             "wave_pressure": self.pressure != Pressure.archimedes,
             "drag": self.damping is not None,
             "radiation": self.damping is not None and self.damping.radiates,
-            "added_mass": self.is_heavy,
+            "added_mass": self.has_added_mass,
         }
         return tuple(cause for cause in CAUSES if acting.get(cause, True))
 
     @functools.cached_property
-    def is_heavy(self) -> bool:
+    def has_added_mass(self) -> bool:
         """Whether any body has added mass."""
         return len(self.added.bodies) > 0
 
     @functools.cached_property
-    def presses(self) -> bool:
+    def has_wave_pressure(self) -> bool:
         """Whether the pressure is another than Archimedes': on still water it is not."""
         return self.pressure != Pressure.archimedes and len(self.rows) > 0
 

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine import layout
-from buoyancy_mj.engine.load_model import CAUSES, Acting
+from buoyancy_mj.engine.load_model import CAUSES, LoadModel
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels.entries import passive as kernel
 from buoyancy_mj.kernels.entries import plugin_hooks as entries
 from buoyancy_mj.kernels.entries.closures import Closure
-from buoyancy_mj.loads.drag import Damping
+from buoyancy_mj.loads.drag import DampingArrays
 from buoyancy_mj.submersion.exact import PackedHulls
 
 THREADS = 64
@@ -43,8 +43,13 @@ class Table:
     """Arrays, by name, where compiled code finds them: three words for each, its address, rows and columns."""
 
     def __init__(self, names: type[IntEnum], arrays: Mapping[str, NDArray[Any]]) -> None:
-        self.arrays = {entry.name: np.atleast_1d(np.ascontiguousarray(arrays[entry.name])) for entry in names}
-        shapes = [(a.ctypes.data, a.shape[0], a.shape[1] if a.ndim > 1 else 1) for a in self.arrays.values()]
+        self.arrays = {
+            entry.name: np.atleast_1d(np.ascontiguousarray(arrays[entry.name])) for entry in names
+        }
+        shapes = [
+            (a.ctypes.data, a.shape[0], a.shape[1] if a.ndim > 1 else 1)
+            for a in self.arrays.values()
+        ]
         self._words = np.array(shapes, np.int64)
         self.address: int = self._words.ctypes.data
         """Of the table."""
@@ -68,22 +73,28 @@ class Record(Table):
         self.ids = np.zeros(len(kernel.Id), np.int64)
         """See `kernels.native.Id`."""
         plain: dict[str, NDArray[Any]]
-        plain = {"results": self.results, "centres": self.centres, "heads": self.heads, "total": self.total}
+        plain = {
+            "results": self.results,
+            "centres": self.centres,
+            "heads": self.heads,
+            "total": self.total,
+        }
         plain |= {"inertia": self.inertia, "instant": self.instant, "ids": self.ids}
         super().__init__(kernel.Record, rows | plain)
 
 
-def ids(record: int) -> NDArray[np.int64]:
+def read_ids(record: int) -> NDArray[np.int64]:
     """The words `Record.ids` of the record at an address."""
     return np.ctypeslib.as_array(
-        ctypes.cast(layout.word(record + 24 * kernel.Record.ids), ctypes.POINTER(ctypes.c_int64)), (len(kernel.Id),)
+        ctypes.cast(layout.word(record + 24 * kernel.Record.ids), ctypes.POINTER(ctypes.c_int64)),
+        (len(kernel.Id),),
     )
 
 
 class Native:
     """The water of one `Buoyancy`, ready for compiled code."""
 
-    def __init__(self, model: mujoco.MjModel, acting: Acting, lock: threading.RLock) -> None:
+    def __init__(self, model: mujoco.MjModel, acting: LoadModel, lock: threading.RLock) -> None:
         """Gather it.
 
         Args:
@@ -94,20 +105,24 @@ class Native:
         Raises:
             EngineError: see `available`.
         """
-        available()
+        require_known_layout()
         packed, owners, water, added = acting.packed, acting.owners, acting.water, acting.added
         exact = isinstance(packed, PackedHulls)
         hulls = packed.arrays if isinstance(packed, PackedHulls) else NO_HULLS
-        self._new_record = functools.partial(Record, len(owners), model.nbody, acting.causes, model.nC)
+        self._new_record = functools.partial(
+            Record, len(owners), model.nbody, acting.causes, model.nC
+        )
         self._scratch = [_Scratch(hulls, self._new_record()) for _ in range(THREADS)]
         self._packed, self._lock, self._geoms = packed, lock, model.ngeom
-        self._submerge = told(self._submerged)
-        self._text = c_text("gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>")
+        self._submerge = wrap_python(self._submerged)
+        self._text = encode_text(
+            "gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>"
+        )
         links = [
             model._address,
             model.signature,
             _compiled(kernel.act).address,
-            0 if exact else address(self._submerge),
+            0 if exact else address_of(self._submerge),
             layout.symbol("mju_error"),
             ctypes.addressof(self._text),
             layout.symbol("mj_factorM"),
@@ -153,7 +168,9 @@ class Native:
             previous: such a function that is called first.
             copies: act on copies of the model too, known by MuJoCo's compilation signature.
         """
-        return closure(kernel.callback, None, (_WORD, _WORD), self.address, previous, int(copies))
+        return make_closure(
+            kernel.callback, None, (_WORD, _WORD), self.address, previous, int(copies)
+        )
 
     def record(self, model: int) -> Record:
         """A record for one data of the model at an address, in use until its word `ALIVE` is 0."""
@@ -190,15 +207,22 @@ class Native:
         # data hold no sizes
         positions, rotations = (
             np.ctypeslib.as_array(
-                ctypes.cast(layout.word(data + layout.offset(f"mjData.{name}")), ctypes.POINTER(ctypes.c_double)),
+                ctypes.cast(
+                    layout.word(data + layout.offset(f"mjData.{name}")),
+                    ctypes.POINTER(ctypes.c_double),
+                ),
                 (self._geoms, n),
             )
             for name, n in (("geom_xpos", 3), ("geom_xmat", 9))
         )
-        time = float(np.frombuffer(np.int64(layout.word(data + layout.offset("mjData.time"))).tobytes())[0])
+        time = float(
+            np.frombuffer(np.int64(layout.word(data + layout.offset("mjData.time"))).tobytes())[0]
+        )
         with self._lock:
             wet = self._packed.submerge(positions, rotations, time, data)
-            target = ctypes.cast(layout.word(record + 24 * kernel.Record.results), ctypes.POINTER(ctypes.c_double))
+            target = ctypes.cast(
+                layout.word(record + 24 * kernel.Record.results), ctypes.POINTER(ctypes.c_double)
+            )
             np.ctypeslib.as_array(target, wet.shape)[:] = wet
 
 
@@ -213,7 +237,7 @@ class _Scratch(Table):
 
 NO_HULLS: Mapping[str, NDArray[Any]] = {name: np.zeros(0, np.int64) for name in PackedHulls.ARRAYS}
 """Of a water whose hulls compiled code does not submerge."""
-NO_DAMPING = Damping(
+NO_DAMPING = DampingArrays(
     np.zeros(0, np.int64),
     np.zeros(0),
     np.zeros((0, 6)),
@@ -227,7 +251,7 @@ NO_DAMPING = Damping(
 )
 
 
-def told(function: Callable[[int, int, int], None]) -> Any:
+def wrap_python(function: Callable[[int, int, int], None]) -> Any:
     """A Python function of three words as a C function that gives 0, or the address of a text if it raises."""
 
     def called(first: int, second: int, third: int) -> int:
@@ -238,26 +262,26 @@ def told(function: Callable[[int, int, int], None]) -> Any:
             error.__context__ = error.__cause__ = None
             _RAISED.error = error.with_traceback(None)
             # kept for the engine to read; a thread that is not Python's keeps nothing of its own
-            _TEXTS.append(c_text(f"buoyancy_mj: {error}"))
+            _TEXTS.append(encode_text(f"buoyancy_mj: {error}"))
             return ctypes.addressof(_TEXTS[-1])
         return 0
 
     return _THREE_WORDS(called)
 
 
-def raised() -> BaseException | None:
-    """What the last function of `told` that failed in this thread raised; then forgotten."""
+def pop_error() -> BaseException | None:
+    """What the last function of `wrap_python` that failed in this thread raised; then forgotten."""
     error: BaseException | None = getattr(_RAISED, "error", None)
     _RAISED.error = None
     return error
 
 
-def c_text(text: str) -> Any:
+def encode_text(text: str) -> Any:
     """A text for MuJoCo's error function, which formats it and has room for a thousand letters."""
     return ctypes.create_string_buffer(text.replace("%", "%%").encode()[:1000])
 
 
-def address(function: Any) -> int:
+def address_of(function: Any) -> int:
     """Of a ctypes function."""
     return ctypes.cast(function, ctypes.c_void_p).value or 0
 
@@ -268,7 +292,7 @@ _TEXTS: collections.deque[Any] = collections.deque(maxlen=4 * THREADS)
 
 
 @functools.cache
-def available() -> None:
+def require_known_layout() -> None:
     """See that this MuJoCo keeps its numbers where compiled code will look for them.
 
     Raises:
@@ -276,12 +300,16 @@ def available() -> None:
     """
     theirs = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY), int(mujoco.mjtSolver.mjSOL_PGS)
     if theirs != (kernel.NO_GRAVITY, kernel.PGS):
-        raise EngineError(f"MuJoCo {mujoco.__version__} has other flags than expected; use buoyancy.installed(native=False)")
+        raise EngineError(
+            f"MuJoCo {mujoco.__version__} has other flags than expected; use buoyancy.installed(native=False)"
+        )
     layout.verify(kernel.OFFSETS)
     layout.symbol("mju_error")
 
 
-def closure(function: Callable[..., Any], result: type | None, arguments: tuple[type, ...], *bound: int) -> Closure:
+def make_closure(
+    function: Callable[..., Any], result: type | None, arguments: tuple[type, ...], *bound: int
+) -> Closure:
     """A kernel as a C function, with its last arguments bound."""
     return Closure(_compiled(function).address, result, arguments, *bound)
 

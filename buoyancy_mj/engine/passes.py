@@ -3,15 +3,22 @@
 import mujoco
 import numpy as np
 
-from buoyancy_mj.engine.load_model import Acting
+from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.engine.native import Record
 from buoyancy_mj.kernels import damping, inertia, panels, wrenches
 from buoyancy_mj.kernels.entries.passive import Id, Pressure
-from buoyancy_mj.loads.drag import Damping
+from buoyancy_mj.loads.drag import DampingArrays
 from buoyancy_mj.submersion.exact import PackedHulls
 
 
-def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight: float, run: int, record: Record) -> None:
+def evaluate(
+    acting: LoadModel,
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    weight: float,
+    run: int,
+    record: Record,
+) -> None:
     """Submersion, then each cause, then their sum, into a record.
 
     Args:
@@ -29,11 +36,13 @@ def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight:
     buoyancy[:] = 0.0
     wrenches.add_buoyancy(record.results, acting.owners, weight, data.xipos, buoyancy)
     record.total[:] = buoyancy
-    if acting.presses:
+    if acting.has_wave_pressure:
         assert isinstance(acting.packed, PackedHulls)
         pushed, dynamic = record.causes["wave_pressure"], acting.pressure == Pressure.froude_krylov
         pushed[:] = 0.0
-        record.heads[:] = acting.packed.press(data.geom_xpos, data.geom_xmat, data.time, dynamic=dynamic)
+        record.heads[:] = acting.packed.press(
+            data.geom_xpos, data.geom_xmat, data.time, dynamic=dynamic
+        )
         wrenches.add_wave_pressure(
             record.heads,
             record.results,
@@ -47,7 +56,7 @@ def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight:
         record.total += pushed
     if acting.damping is not None:
         _slow_down(acting, acting.damping, model, data, record)
-    if acting.is_heavy:
+    if acting.has_added_mass:
         reaction, added = record.causes["added_mass"], acting.added
         reaction[:] = 0.0
         inertia.add_reaction(
@@ -76,7 +85,13 @@ def evaluate(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, weight:
         record.total += reaction
 
 
-def _slow_down(acting: Acting, slow: Damping, model: mujoco.MjModel, data: mujoco.MjData, record: Record) -> None:
+def _slow_down(
+    acting: LoadModel,
+    slow: DampingArrays,
+    model: mujoco.MjModel,
+    data: mujoco.MjData,
+    record: Record,
+) -> None:
     """Drag and the damping by waves made."""
     moving = damping.Moving(
         slow.bodies,
@@ -99,20 +114,41 @@ def _slow_down(acting: Acting, slow: Damping, model: mujoco.MjModel, data: mujoc
     )
     drag = record.causes["drag"]
     drag[:] = 0.0
-    damping.add_drag(moving, record.centres, slow.volumes, slow.linear, slow.quadratic, slow.coupled, slow.matrices, drag)
+    damping.add_drag(
+        moving,
+        record.centres,
+        slow.volumes,
+        slow.linear,
+        slow.quadratic,
+        slow.coupled,
+        slow.matrices,
+        drag,
+    )
     if len(slow.panels):
         assert isinstance(acting.packed, PackedHulls)
         places = data.geom_xpos, data.geom_xmat
-        panels.add_panels(moving, *acting.packed.triangles, *places, record.results, acting.owners, slow.panels, drag)
+        panels.add_panels(
+            moving,
+            *acting.packed.triangles,
+            *places,
+            record.results,
+            acting.owners,
+            slow.panels,
+            drag,
+        )
     record.total += drag
     if slow.radiates:
         made = record.causes["radiation"]
         made[:] = 0.0
-        damping.add_radiation(moving, record.results, acting.owners, record.centres, slow.radiation, made)
+        damping.add_radiation(
+            moving, record.results, acting.owners, record.centres, slow.radiation, made
+        )
         record.total += made
 
 
-def make_heavier(acting: Acting, model: mujoco.MjModel, data: mujoco.MjData, record: Record) -> None:
+def add_inertia(
+    acting: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, record: Record
+) -> None:
     """Add the added mass to the engine's mass matrix, once in each pass."""
     added, heavier = acting.added, record.ids[Id.heavier]
     if heavier and np.array_equal(data.M, record.inertia):

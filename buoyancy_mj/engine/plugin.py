@@ -30,8 +30,8 @@ from buoyancy_mj.kernels.entries import plugin_hooks as entries
 from buoyancy_mj.kernels.entries.closures import Closure
 from buoyancy_mj.loads.drag import Drag
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.settings import KEYS, Settings, settings_from_texts, texts_from_settings
-from buoyancy_mj.submersion.methods import Method, method_of
+from buoyancy_mj.settings.settings import KEYS, Settings, parse_plugin_config, write_plugin_config
+from buoyancy_mj.submersion.methods import Method, parse_method
 
 KEPT = 32
 """Waters that are kept although no data use them, lest a model whose data come and go be read again and again."""
@@ -46,7 +46,9 @@ _READ = (
 What else matters, as masses and the timestep, is read anew in each pass."""
 _OFF, _ON = mujoco.mjtDisableBit, mujoco.mjtEnableBit
 _FLAGS = {
-    "mjModel.opt.disableflags": int(_OFF.mjDSBL_SPRING) | int(_OFF.mjDSBL_DAMPER) | int(_OFF.mjDSBL_GRAVITY),
+    "mjModel.opt.disableflags": int(_OFF.mjDSBL_SPRING)
+    | int(_OFF.mjDSBL_DAMPER)
+    | int(_OFF.mjDSBL_GRAVITY),
     "mjModel.opt.enableflags": int(_ON.mjENBL_SLEEP),
 }
 """Flags that matter likewise."""
@@ -85,19 +87,26 @@ def add_water(
         WaterError, MethodError: a wave or a method that MJCF cannot hold.
         EngineError: this MuJoCo is not as expected inside.
     """
-    registered()
+    register()
     if any(plugin.name == instance for plugin in spec.plugins):
-        raise ModelError(f"the model already has a plugin instance '{instance}'; give the water another name (instance=)")
+        raise ModelError(
+            f"the model already has a plugin instance '{instance}'; give the water another name (instance=)"
+        )
     chosen = {
         name: None if words is None else (words,) if isinstance(words, str) else tuple(words)
         for name, words in (("geoms", geoms), ("hull", hull), ("fill", fill))
     }
     settings = Settings(
-        water=water or Water(), method=method_of(method), pressure=pressure, drag=drag, added_mass=added_mass, **chosen
+        water=water or Water(),
+        method=parse_method(method),
+        pressure=pressure,
+        drag=drag,
+        added_mass=added_mass,
+        **chosen,
     )
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
-    plugin.config = texts_from_settings(settings)
+    plugin.config = write_plugin_config(settings)
 
 
 def water_in(model: mujoco.MjModel, instance: str | None = None) -> Buoyancy:
@@ -116,7 +125,10 @@ def water_in(model: mujoco.MjModel, instance: str | None = None) -> Buoyancy:
 
 def _instance(model: mujoco.MjModel, name: str | None) -> int:
     """Index of an instance by name."""
-    own = {mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_PLUGIN, i) or "": i for i in plugin_instances(model)}
+    own = {
+        mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_PLUGIN, i) or "": i
+        for i in plugin_instances(model)
+    }
     if name is None and len(own) == 1:
         return next(iter(own.values()))
     if name is None or name not in own:
@@ -142,11 +154,11 @@ def _resolve(model: int, data: int, instance: int) -> None:
         water = _found(model, instance).native
         slot = layout.word(data + layout.offset("mjData.plugin_data")) + 8 * instance
         record = layout.word(slot)
-        if record and native.ids(record)[kernel.Id.water] == water.address:
-            native.ids(record)[kernel.Id.model] = model
+        if record and native.read_ids(record)[kernel.Id.water] == water.address:
+            native.read_ids(record)[kernel.Id.model] = model
             return
         if record:
-            native.ids(record)[kernel.Id.alive] = 0
+            native.read_ids(record)[kernel.Id.alive] = 0
         _WORD.from_address(slot).value = water.record(model).address
 
 
@@ -174,7 +186,9 @@ def _made(model: mujoco.MjModel, instance: int) -> Buoyancy:
             "enable one of them, <flag damper='enable'/>"
         )
     name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_PLUGIN, instance) or str(instance)
-    settings = settings_from_texts(_texts(model._address, instance), f"plugin '{PLUGIN}', instance '{name}'")
+    settings = parse_plugin_config(
+        _texts(model._address, instance), f"plugin '{PLUGIN}', instance '{name}'"
+    )
     # nobody lends this one as a control callback
     model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
     return Buoyancy(
@@ -200,7 +214,9 @@ def _key(model: int, instance: int) -> bytes:
         digest.update(values)
     # the compiler disables other flags for a while
     for path, flags in _FLAGS.items():
-        digest.update(str(ctypes.c_int.from_address(model + layout.offset(path)).value & flags).encode())
+        digest.update(
+            str(ctypes.c_int.from_address(model + layout.offset(path)).value & flags).encode()
+        )
     digest.update(ctypes.string_at(model + layout.offset("mjModel.opt.gravity"), 24))
     return digest.digest()
 
@@ -209,11 +225,15 @@ def _copied(model: int) -> mujoco.MjModel:
     """A copy of the engine's model at an address, as a Python object."""
     # a batch's models refer to the meshes of another
     error = ctypes.create_string_buffer(1000)
-    whole = layout.function("mj_embedAssets", _WORD, _WORD, _WORD, _INT)(model, ctypes.addressof(error), len(error))
+    whole = layout.function("mj_embedAssets", _WORD, _WORD, _WORD, _INT)(
+        model, ctypes.addressof(error), len(error)
+    )
     if not whole:
         raise ModelError(f"MuJoCo cannot copy the model to find its water: {error.value.decode()}")
     buffer = ctypes.create_string_buffer(layout.function("mj_sizeModel", _WORD, _WORD)(whole))
-    layout.function("mj_saveModel", None, *[_WORD] * 4)(whole, 0, ctypes.addressof(buffer), len(buffer))
+    layout.function("mj_saveModel", None, *[_WORD] * 4)(
+        whole, 0, ctypes.addressof(buffer), len(buffer)
+    )
     layout.function("mj_deleteModel", None, _WORD)(whole)
     return mujoco.MjModel.from_binary_path("model.mjb", {"model.mjb": buffer.raw})
 
@@ -250,8 +270,14 @@ class _Plugin(ctypes.Structure):
         ("attributes", ctypes.POINTER(ctypes.c_char_p)),
         ("capabilityflags", _INT),
         ("needstage", _INT),
-        *((name, ctypes.c_void_p) for name in ("nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute")),
-        *((name, ctypes.c_void_p) for name in ("advance", "visualize", "actuator_act_dot", "sdf_distance", "sdf_gradient")),
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute")
+        ),
+        *(
+            (name, ctypes.c_void_p)
+            for name in ("advance", "visualize", "actuator_act_dot", "sdf_distance", "sdf_gradient")
+        ),
         *((name, ctypes.c_void_p) for name in ("sdf_staticdistance", "sdf_attribute", "sdf_aabb")),
     )
 
@@ -260,19 +286,25 @@ class _Engine:
     """The plugin as the engine knows it, never freed: data may be deleted after the interpreter has gone."""
 
     def __init__(self) -> None:
-        native.available()
+        native.require_known_layout()
         layout.verify(["mjData.plugin_data", *(f"mjModel.{name}" for name in _READ)])
-        self._resolve = native.told(_resolve)
-        context = [layout.offset("mjData.plugin_data"), native.address(self._resolve), layout.symbol("mju_error")]
+        self._resolve = native.wrap_python(_resolve)
+        context = [
+            layout.offset("mjData.plugin_data"),
+            native.address_of(self._resolve),
+            layout.symbol("mju_error"),
+        ]
         self._context = np.array(context, np.uint64).astype(np.int64)
         bound = self._context.ctypes.data
         self._functions: dict[str, Closure] = {
-            "nstate": native.closure(entries.nstate, _INT, (_WORD, _INT)),
-            "init": native.closure(entries.init, _INT, (_WORD, _WORD, _INT), bound),
-            "destroy": native.closure(entries.destroy, None, (_WORD, _INT), bound),
-            "copy": native.closure(entries.copy, None, (_WORD, _WORD, _WORD, _INT), bound),
-            "reset": native.closure(entries.reset, None, (_WORD, _WORD, _WORD, _INT)),
-            "compute": native.closure(entries.compute, None, (_WORD, _WORD, _INT, _INT), bound),
+            "nstate": native.make_closure(entries.nstate, _INT, (_WORD, _INT)),
+            "init": native.make_closure(entries.init, _INT, (_WORD, _WORD, _INT), bound),
+            "destroy": native.make_closure(entries.destroy, None, (_WORD, _INT), bound),
+            "copy": native.make_closure(entries.copy, None, (_WORD, _WORD, _WORD, _INT), bound),
+            "reset": native.make_closure(entries.reset, None, (_WORD, _WORD, _WORD, _INT)),
+            "compute": native.make_closure(
+                entries.compute, None, (_WORD, _WORD, _INT, _INT), bound
+            ),
         }
         self._attributes = (ctypes.c_char_p * len(KEYS))(*(key.encode() for key in KEYS))
         self._plugin = _Plugin(
@@ -288,7 +320,7 @@ class _Engine:
 
 
 @functools.cache
-def registered() -> None:
+def register() -> None:
     """See that MuJoCo knows the plugin.
 
     Raises:
@@ -298,6 +330,8 @@ def registered() -> None:
 
 
 try:
-    registered()
+    register()
 except EngineError as _error:
-    warnings.warn(f"models cannot bring their own water here: {_error}", BuoyancyWarning, stacklevel=2)
+    warnings.warn(
+        f"models cannot bring their own water here: {_error}", BuoyancyWarning, stacklevel=2
+    )

@@ -10,7 +10,9 @@ from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.selection import body_name
 
 
-def stated(model: mujoco.MjModel, quantity: str, bodies: Sequence[int]) -> dict[int, NDArray[np.float64]]:
+def read_custom(
+    model: mujoco.MjModel, quantity: str, bodies: Sequence[int]
+) -> dict[int, NDArray[np.float64]]:
     """The numbers of a quantity, as 'added_mass', by the index of the body.
 
     Raises:
@@ -22,11 +24,11 @@ def stated(model: mujoco.MjModel, quantity: str, bodies: Sequence[int]) -> dict[
         if name.startswith(f"{quantity}:"):
             start = model.numeric_adr[i]
             values = np.array(model.numeric_data[start : start + model.numeric_size[i]])
-            found[body_of(model, name.removeprefix(f"{quantity}:"), bodies, quantity)] = values
+            found[find_body(model, name.removeprefix(f"{quantity}:"), bodies, quantity)] = values
     return found
 
 
-def body_of(model: mujoco.MjModel, name: str, bodies: Sequence[int], quantity: str) -> int:
+def find_body(model: mujoco.MjModel, name: str, bodies: Sequence[int], quantity: str) -> int:
     """Index of a body by its name.
 
     Raises:

@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning, MeshError
-from buoyancy_mj.hulls.hull import Hull, joined
-from buoyancy_mj.hulls.selection import SOLIDS, considered, fills_of, geom_name, shapes_of
+from buoyancy_mj.hulls.hull import Hull, join_overlapping
+from buoyancy_mj.hulls.selection import SOLIDS, geom_name, judge_geoms, parse_fills, parse_shapes
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.mesh import TriMesh
-from buoyancy_mj.meshes.repair import Diagnosis, convex_of, diagnosed
+from buoyancy_mj.meshes.repair import Diagnosis, diagnose, wrap_convex
 
 _MESH, _BOX, _SPHERE, _ELLIPSOID, _CYLINDER, _CAPSULE = SOLIDS
 
 
-def displacing_hulls(
+def find_hulls(
     model: mujoco.MjModel,
     geoms: str | Sequence[str] | None = None,
     bodies: Sequence[int] | None = None,
@@ -31,7 +31,7 @@ def displacing_hulls(
 
     Args:
         model: any model.
-        geoms: which geoms displace water, name globs or group:N, see `choice.considered`.
+        geoms: which geoms displace water, name globs or group:N, see `hulls.judge_geoms`.
         bodies: indices of the bodies whose geoms may; None for all.
         hull: which geoms displace as their convex hull, words 'PATTERN=convex'.
         fill: of geoms that flood, the part of the volume that displaces, words 'PATTERN=0.1'.
@@ -43,39 +43,53 @@ def displacing_hulls(
         ModelError: no geom is left, or a pattern matches none.
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
-    chosen = [verdict.geom for verdict in considered(model, geoms, bodies) if verdict.taken]
-    return hulls_of(model, chosen, shapes_of(model, chosen, hull), fills_of(model, chosen, fill))
-
-
-def hulls_of(
-    model: mujoco.MjModel, chosen: Sequence[int], forms: Mapping[int, str], fills: Mapping[int, float]
-) -> tuple[Hull, ...]:
-    """The hulls of chosen geoms, with the shape and the fill of those that have one; see `displacing_hulls`."""
-    known: dict[tuple[Any, ...], TriMesh] = {}
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
-    return joined(
-        [_hull(model, data, g, _mesh(model, g, forms.get(g) == "convex", known), fills.get(g, 1.0)) for g in chosen]
+    chosen = [verdict.geom for verdict in judge_geoms(model, geoms, bodies) if verdict.displaces]
+    return build_hulls(
+        model, chosen, parse_shapes(model, chosen, hull), parse_fills(model, chosen, fill)
     )
 
 
-def diagnosis(model: mujoco.MjModel, geom: int) -> Diagnosis | None:
+def build_hulls(
+    model: mujoco.MjModel,
+    chosen: Sequence[int],
+    forms: Mapping[int, str],
+    fills: Mapping[int, float],
+) -> tuple[Hull, ...]:
+    """The hulls of chosen geoms, with the shape and the fill of those that have one; see `find_hulls`."""
+    known: dict[tuple[Any, ...], TriMesh] = {}
+    data = mujoco.MjData(model)
+    mujoco.mj_kinematics(model, data)
+    return join_overlapping(
+        [
+            _hull(
+                model, data, g, _mesh(model, g, forms.get(g) == "convex", known), fills.get(g, 1.0)
+            )
+            for g in chosen
+        ]
+    )
+
+
+def diagnose_geom(model: mujoco.MjModel, geom: int) -> Diagnosis | None:
     """What is wrong with the mesh of a geom, once for each mesh; None for other geoms, with which nothing is."""
     if model.geom_type[geom] != _MESH:
         return None
-    arrays = geom_mesh(model, geom)
+    arrays = read_geom_mesh(model, geom)
     assert arrays is not None
-    return _diagnosed(*(values.tobytes() for values in arrays), mesh_name(model, geom))
+    return _diagnosed(*(values.tobytes() for values in arrays), describe_mesh(model, geom))
 
 
-def geom_mesh(model: mujoco.MjModel, geom: int) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
+def read_geom_mesh(
+    model: mujoco.MjModel, geom: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
     """Vertices (n, 3) [m] and faces (m, 3) of a geom in its frame as they are; None for planes and fields."""
     kind, size = model.geom_type[geom], model.geom_size[geom]
     if kind == _MESH:
         mesh = model.geom_dataid[geom]
         v, n = model.mesh_vertadr[mesh], model.mesh_vertnum[mesh]
         f, m = model.mesh_faceadr[mesh], model.mesh_facenum[mesh]
-        return model.mesh_vert[v : v + n].astype(np.float64), model.mesh_face[f : f + m].astype(np.int64)
+        return model.mesh_vert[v : v + n].astype(np.float64), model.mesh_face[f : f + m].astype(
+            np.int64
+        )
     if kind not in SOLIDS:
         return None
     if kind == _BOX:
@@ -91,7 +105,9 @@ def geom_mesh(model: mujoco.MjModel, geom: int) -> tuple[NDArray[np.float64], ND
     return solid.vertices, solid.faces
 
 
-def _hull(model: mujoco.MjModel, data: mujoco.MjData, geom: int, mesh: TriMesh, fill: float) -> Hull:
+def _hull(
+    model: mujoco.MjModel, data: mujoco.MjData, geom: int, mesh: TriMesh, fill: float
+) -> Hull:
     """The hull of a geom, placed in the body that it moves with."""
     body = int(model.body_weldid[model.geom_bodyid[geom]])
     world_from_body = data.xmat[body].reshape(3, 3)
@@ -107,13 +123,15 @@ def _hull(model: mujoco.MjModel, data: mujoco.MjData, geom: int, mesh: TriMesh, 
     )
 
 
-def _mesh(model: mujoco.MjModel, geom: int, convex: bool, known: dict[tuple[Any, ...], TriMesh]) -> TriMesh:
+def _mesh(
+    model: mujoco.MjModel, geom: int, convex: bool, known: dict[tuple[Any, ...], TriMesh]
+) -> TriMesh:
     """The hull of a geom; one for all geoms of the same mesh asset, or of the same type and size."""
     is_mesh = model.geom_type[geom] == _MESH
     key = (convex, *((_MESH, int(model.geom_dataid[geom])) if is_mesh else _primitive(model, geom)))
     if key in known:
         return known[key]
-    found = None if convex else diagnosis(model, geom)
+    found = None if convex else diagnose_geom(model, geom)
     if found is not None:
         if found.mesh is None:
             raise MeshError(found.refusal)
@@ -121,9 +139,9 @@ def _mesh(model: mujoco.MjModel, geom: int, convex: bool, known: dict[tuple[Any,
         for notice in found.notices:
             warnings.warn(notice, BuoyancyWarning, stacklevel=2)
         return found.mesh
-    arrays = geom_mesh(model, geom)
+    arrays = read_geom_mesh(model, geom)
     assert arrays is not None
-    known[key] = convex_of(arrays[0], mesh_name(model, geom)) if is_mesh else TriMesh(*arrays)
+    known[key] = wrap_convex(arrays[0], describe_mesh(model, geom)) if is_mesh else TriMesh(*arrays)
     return known[key]
 
 
@@ -131,7 +149,7 @@ def _primitive(model: mujoco.MjModel, geom: int) -> tuple[float, ...]:
     return (int(model.geom_type[geom]), *model.geom_size[geom].tolist())
 
 
-def mesh_name(model: mujoco.MjModel, geom: int) -> str:
+def describe_mesh(model: mujoco.MjModel, geom: int) -> str:
     """What messages call the mesh of a geom."""
     asset = int(model.geom_dataid[geom])
     sharing = np.flatnonzero((model.geom_type == _MESH) & (model.geom_dataid == asset))
@@ -142,4 +160,8 @@ def mesh_name(model: mujoco.MjModel, geom: int) -> str:
 @functools.lru_cache(maxsize=64)
 def _diagnosed(vertices: bytes, faces: bytes, name: str) -> Diagnosis:
     """`diagnosed`, once for each mesh: the same vehicle is read again and again, for each run of a sweep."""
-    return diagnosed(np.frombuffer(vertices).reshape(-1, 3), np.frombuffer(faces, np.int64).reshape(-1, 3), name=name)
+    return diagnose(
+        np.frombuffer(vertices).reshape(-1, 3),
+        np.frombuffer(faces, np.int64).reshape(-1, 3),
+        name=name,
+    )

@@ -11,7 +11,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning
-from buoyancy_mj.meshes.mesh import TriMesh, solid_of
+from buoyancy_mj.meshes.mesh import TriMesh, to_manifold
 
 _Solid = Callable[["Hull"], manifold3d.Manifold]
 OVERLAP = 1e-6
@@ -40,7 +40,7 @@ class Hull:
     """Indices of all geoms it is made of."""
 
     @property
-    def displacement(self) -> float:
+    def displaced_volume(self) -> float:
         """Volume of water that it displaces fully submerged [m^3]."""
         return self.fill * self.mesh.volume
 
@@ -50,7 +50,7 @@ class Hull:
         return self.mesh.transformed(self.body_from_geom, self.position)
 
 
-def joined(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
+def join_overlapping(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
     """The hulls, those of one body that overlap joined by boolean union, so that no volume counts twice.
 
     Where hulls of different fill overlap, the common volume belongs to the fuller one.
@@ -58,19 +58,21 @@ def joined(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
     result: list[Hull] = []
     for body in sorted({hull.body for hull in hulls}):
         own = [hull for hull in hulls if hull.body == body]
-        solid = functools.cache(solid_in_body)
-        near = close_pairs([hull.mesh_in_body for hull in own])
+        solid = functools.cache(build_solid)
+        near = find_close_pairs([hull.mesh_in_body for hull in own])
         edges = [(i, j) for i, j in near if _overlap(own[i], own[j], solid)]
-        labels = trimesh.graph.connected_component_labels(np.array(edges, np.int64).reshape(-1, 2), len(own))
+        labels = trimesh.graph.connected_component_labels(
+            np.array(edges, np.int64).reshape(-1, 2), len(own)
+        )
         for label in dict.fromkeys(labels.tolist()):
             group = [hull for hull, other in zip(own, labels, strict=True) if other == label]
             result += _united(group, solid) if len(group) > 1 else group
     return tuple(sorted(result, key=lambda hull: hull.geom))
 
 
-def solid_in_body(hull: Hull) -> manifold3d.Manifold:
+def build_solid(hull: Hull) -> manifold3d.Manifold:
     """A hull in the frame of its body, for booleans; empty, with a warning, where its mesh is no manifold."""
-    solid = solid_of(*hull.mesh_in_body.compact)
+    solid = to_manifold(*hull.mesh_in_body.compact)
     if solid is None:
         warnings.warn(
             f"geom '{hull.name}': more than two faces meet at an edge of its mesh; "
@@ -82,7 +84,7 @@ def solid_in_body(hull: Hull) -> manifold3d.Manifold:
     return solid
 
 
-def close_pairs(meshes: Sequence[TriMesh]) -> list[tuple[int, int]]:
+def find_close_pairs(meshes: Sequence[TriMesh]) -> list[tuple[int, int]]:
     """Pairs of meshes whose bounding boxes overlap."""
     bounds = np.array([mesh.bounds for mesh in meshes])
     apart = (bounds[:, None, 0] >= bounds[None, :, 1]).any(axis=-1)
@@ -99,13 +101,17 @@ def _united(group: list[Hull], solid: _Solid) -> list[Hull]:
     result, fuller = [], manifold3d.Manifold()
     for fill in sorted({hull.fill for hull in group}, reverse=True):
         alike = [hull for hull in group if hull.fill == fill]
-        whole = manifold3d.Manifold.batch_boolean([solid(hull) for hull in alike], manifold3d.OpType.Add)
+        whole = manifold3d.Manifold.batch_boolean(
+            [solid(hull) for hull in alike], manifold3d.OpType.Add
+        )
         rest = whole - fuller
         fuller = fuller + whole
         # nothing is left of a hull that lies inside a fuller one
         if rest.volume() > OVERLAP * min(hull.mesh.volume for hull in alike):
             first, mesh = alike[0], rest.to_mesh64()
-            in_body = TriMesh(np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts).astype(np.int64))
+            in_body = TriMesh(
+                np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts).astype(np.int64)
+            )
             back = first.body_from_geom.T
             result.append(
                 dataclasses.replace(

@@ -14,7 +14,7 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.meshes.mesh import TriMesh
 
 
-def written(spec: mujoco.MjSpec, path: Path) -> Path:
+def write_mjcf(spec: mujoco.MjSpec, path: Path) -> Path:
     """Write a spec as MJCF whose files are still found from there; where it lies.
 
     Raises:
@@ -34,11 +34,15 @@ def written(spec: mujoco.MjSpec, path: Path) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         path.write_text(ElementTree.tostring(root, encoding="unicode") + "\n")
     except (OSError, ValueError, mujoco.FatalError) as error:
-        raise ModelError(f"cannot write '{path}': {' '.join(str(error).split())}; choose another place") from error
+        raise ModelError(
+            f"cannot write '{path}': {' '.join(str(error).split())}; choose another place"
+        ) from error
     return path
 
 
-def with_meshes(spec: mujoco.MjSpec, model: mujoco.MjModel, mended: Mapping[int, TriMesh], folder: Path) -> mujoco.MjSpec:
+def embed_meshes(
+    spec: mujoco.MjSpec, model: mujoco.MjModel, mended: Mapping[int, TriMesh], folder: Path
+) -> mujoco.MjSpec:
     """A copy of a spec with some meshes replaced, each written as a Wavefront file.
 
     Args:
@@ -60,10 +64,16 @@ def with_meshes(spec: mujoco.MjSpec, model: mujoco.MjModel, mended: Mapping[int,
         place = folder / f"{name.replace('/', '-')}.obj"
         try:
             folder.mkdir(parents=True, exist_ok=True)
-            solid = trimesh.Trimesh(turn.apply(vertices) + model.mesh_pos[index], faces, process=False)
-            place.write_text(trimesh.exchange.obj.export_obj(solid, include_normals=False, digits=9))
+            solid = trimesh.Trimesh(
+                turn.apply(vertices) + model.mesh_pos[index], faces, process=False
+            )
+            place.write_text(
+                trimesh.exchange.obj.export_obj(solid, include_normals=False, digits=9)
+            )
         except OSError as error:
-            raise ModelError(f"cannot write '{place}': {error.strerror}; choose another place") from error
+            raise ModelError(
+                f"cannot write '{place}': {error.strerror}; choose another place"
+            ) from error
         asset = assets[name]
         own = Path(copy.modelfiledir or ".").resolve() / copy.meshdir
         asset.file = os.path.relpath(place.resolve(), own)

@@ -14,26 +14,29 @@ GEOMS, HULL, FILL = "buoyancy_geoms", "buoyancy_hull", "buoyancy_fill"
 HULLS = ("mesh", "convex")
 """What a geom may displace as: its own mesh, or its convex hull."""
 SOLIDS = tuple(
-    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("MESH", "BOX", "SPHERE", "ELLIPSOID", "CYLINDER", "CAPSULE")
+    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}"))
+    for name in ("MESH", "BOX", "SPHERE", "ELLIPSOID", "CYLINDER", "CAPSULE")
 )
 """Types of geoms that bound a volume."""
 
 
 @dataclasses.dataclass(frozen=True)
-class Considered:
+class Verdict:
     """A geom, and whether it displaces water."""
 
     geom: int
     """Its index in the model."""
-    taken: bool
+    displaces: bool
     """Whether it does."""
     reason: str
     """Why, or why not."""
 
 
-def considered(
-    model: mujoco.MjModel, geoms: str | Sequence[str] | None = None, bodies: Sequence[int] | None = None
-) -> tuple[Considered, ...]:
+def judge_geoms(
+    model: mujoco.MjModel,
+    geoms: str | Sequence[str] | None = None,
+    bodies: Sequence[int] | None = None,
+) -> tuple[Verdict, ...]:
     """Every geom of a model with the verdict on it.
 
     Of each moving body the collision geoms (contype or conaffinity not zero) displace water if it
@@ -51,23 +54,33 @@ def considered(
     words = _words(model, GEOMS, geoms, "geoms")
     if words is not None:
         by = "chosen" if geoms is not None else f"chosen by the model's '{GEOMS}'"
-        chosen = {g: f"{by}: {word}" for word in reversed(words) for g in _matching(model, solid, word)}
+        chosen = {
+            g: f"{by}: {word}" for word in reversed(words) for g in _matching(model, solid, word)
+        }
         left = "not among those chosen"
     else:
         collides = {g: bool(model.geom_contype[g] or model.geom_conaffinity[g]) for g in solid}
         bodies_that_collide = {model.geom_bodyid[g] for g in solid if collides[g]}
         chosen = {g: "collision geom" for g in solid if collides[g]}
-        chosen |= {g: "visual; its body has no collision geoms" for g in solid if _body(model, g) not in bodies_that_collide}
+        chosen |= {
+            g: "visual; its body has no collision geoms"
+            for g in solid
+            if _body(model, g) not in bodies_that_collide
+        }
         left = "visual; its body has collision geoms"
     if not chosen:
         raise ModelError(
             "no geom of this model displaces water: it has no mesh, box, sphere, ellipsoid, capsule or cylinder "
             "on a body that can move; give the vehicle such a geom, and its body a joint"
         )
-    return tuple(Considered(g, g in chosen, chosen.get(g) or refused.get(g) or left) for g in range(model.ngeom))
+    return tuple(
+        Verdict(g, g in chosen, chosen.get(g) or refused.get(g) or left) for g in range(model.ngeom)
+    )
 
 
-def shapes_of(model: mujoco.MjModel, geoms: Sequence[int], hull: str | Sequence[str] | None) -> dict[int, str]:
+def parse_shapes(
+    model: mujoco.MjModel, geoms: Sequence[int], hull: str | Sequence[str] | None
+) -> dict[int, str]:
     """Of each of `geoms`, one of `HULLS`; by words 'PATTERN=convex', or 'convex' for all.
 
     Raises:
@@ -81,7 +94,9 @@ def shapes_of(model: mujoco.MjModel, geoms: Sequence[int], hull: str | Sequence[
     return found
 
 
-def fills_of(model: mujoco.MjModel, geoms: Sequence[int], fill: str | Sequence[str] | None) -> dict[int, float]:
+def parse_fills(
+    model: mujoco.MjModel, geoms: Sequence[int], fill: str | Sequence[str] | None
+) -> dict[int, float]:
     """Of those of `geoms` that are flooded, the part of their volume that displaces; by words 'PATTERN=0.1'.
 
     Raises:
@@ -94,7 +109,9 @@ def fills_of(model: mujoco.MjModel, geoms: Sequence[int], fill: str | Sequence[s
         except ValueError:
             part = math.nan
         if not 0.0 < part <= 1.0:
-            raise ModelError(f"fill '{word}' is no part of a volume: it must be above 0 and at most 1, as in 'frame=0.1'")
+            raise ModelError(
+                f"fill '{word}' is no part of a volume: it must be above 0 and at most 1, as in 'frame=0.1'"
+            )
         found |= dict.fromkeys(matching, part)
     return found
 
@@ -132,15 +149,26 @@ def _body(model: mujoco.MjModel, geom: int) -> int:
     return int(model.geom_bodyid[geom])
 
 
-def _words(model: mujoco.MjModel, text: str, given: str | Sequence[str] | None, what: str) -> list[str] | None:
+def _words(
+    model: mujoco.MjModel, text: str, given: str | Sequence[str] | None, what: str
+) -> list[str] | None:
     """The user's words, or the vehicle's own, or none."""
     if given is not None:
-        words = [word for part in ([given] if isinstance(given, str) else given) for word in _split(str(part))]
+        words = [
+            word
+            for part in ([given] if isinstance(given, str) else given)
+            for word in _split(str(part))
+        ]
         if not words:
-            raise ModelError(f"an empty choice of {what} displaces nothing; give name globs or group:N, or leave it out")
+            raise ModelError(
+                f"an empty choice of {what} displaces nothing; give name globs or group:N, or leave it out"
+            )
         return words
     texts = [i for i in range(model.ntext) if _text_name(model, i).rsplit("/", 1)[-1] == text]
-    data = [bytes(model.text_data[model.text_adr[i] :][: model.text_size[i]]).split(b"\0")[0].decode() for i in texts]
+    data = [
+        bytes(model.text_data[model.text_adr[i] :][: model.text_size[i]]).split(b"\0")[0].decode()
+        for i in texts
+    ]
     return [word for text in data for word in _split(text)] or None
 
 
@@ -153,7 +181,11 @@ def _text_name(model: mujoco.MjModel, text: int) -> str:
 
 
 def _assigned(
-    model: mujoco.MjModel, geoms: Sequence[int], text: str, given: str | Sequence[str] | None, what: str
+    model: mujoco.MjModel,
+    geoms: Sequence[int],
+    text: str,
+    given: str | Sequence[str] | None,
+    what: str,
 ) -> list[tuple[str, str, list[int]]]:
     """Words PATTERN=VALUE, their values, and those of `geoms` that match; a value alone is for all."""
     words = _words(model, text, given, what) or []
@@ -168,6 +200,8 @@ def _matching(model: mujoco.MjModel, geoms: Sequence[int], pattern: str) -> list
     else:
         found = [g for g in geoms if fnmatch.fnmatchcase(geom_name(model, g), pattern)]
     if not found:
-        names = {geom_name(model, g) for g in geoms} | {f"group:{model.geom_group[g]}" for g in geoms}
+        names = {geom_name(model, g) for g in geoms} | {
+            f"group:{model.geom_group[g]}" for g in geoms
+        }
         raise ModelError(f"no moving geom matches '{pattern}'; {choices(pattern, names)}")
     return found

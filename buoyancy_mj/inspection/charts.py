@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.inspection.inspection import Floating, Inspection
-from buoyancy_mj.statics.curves import draft_curves, waterlines
+from buoyancy_mj.statics.curves import compute_draft_curves, waterlines
 from buoyancy_mj.statics.vessel import Vessel
 
 
-def drawn(found: Inspection, folder: Path) -> list[tuple[str, Path]]:
+def draw_charts(found: Inspection, folder: Path) -> list[tuple[str, Path]]:
     """Draw all that floats, as PNG files in a folder; what each shows, and where it is."""
     files = []
     with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
@@ -31,14 +31,18 @@ def _figures(floating: Floating) -> Iterator[tuple[str, str, Figure]]:
     """What can be drawn."""
     rotation = floating.at_rest.rotation
     draft = None if floating.rest is None else floating.rest.hydrostatics.draft
-    yield "curves", "Volume and waterplane area against draft", _curves(floating.vessel, rotation, draft)
+    yield (
+        "curves",
+        "Volume and waterplane area against draft",
+        _curves(floating.vessel, rotation, draft),
+    )
     yield "waterlines", "Waterlines", _waterlines(floating.vessel, rotation, draft)
     if floating.righting is not None:
         yield "gz", "Righting arm", _gz(floating)
 
 
 def _curves(vessel: Vessel, rotation: NDArray[np.float64], draft: float | None) -> Figure:
-    curves = draft_curves(vessel, rotation)
+    curves = compute_draft_curves(vessel, rotation)
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")
     axes = figure.subplots()
     axes.plot(1e3 * curves.volume, curves.draft, color="C0")
@@ -71,7 +75,10 @@ def _waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float | No
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
-    axes.set_title("waterlines at a tenth to nine tenths of the height" + ("" if draft is None else "; at rest in red"))
+    axes.set_title(
+        "waterlines at a tenth to nine tenths of the height"
+        + ("" if draft is None else "; at rest in red")
+    )
     return figure
 
 
@@ -85,12 +92,31 @@ def _gz(floating: Floating) -> Figure:
     axes.axhline(0.0, color="0.3", linewidth=0.8)
     assert floating.rest is not None
     slope = floating.rest.hydrostatics.GMt
-    axes.plot([0.0, 57.2958], [0.0, slope], color="0.5", linestyle=":", linewidth=1.0, label=f"GM {slope:.3g} m")
+    axes.plot(
+        [0.0, 57.2958],
+        [0.0, slope],
+        color="0.5",
+        linestyle=":",
+        linewidth=1.0,
+        label=f"GM {slope:.3g} m",
+    )
     axes.set_ylim(*_padded(arm.gz))
     if np.isfinite(arm.vanishing):
-        axes.axvline(np.degrees(arm.vanishing), color="C3", linestyle="--", linewidth=1.0, label="vanishing stability")
+        axes.axvline(
+            np.degrees(arm.vanishing),
+            color="C3",
+            linestyle="--",
+            linewidth=1.0,
+            label="vanishing stability",
+        )
     for i, (name, at) in enumerate((n, a) for n, a in arm.immersed.items() if np.isfinite(a)):
-        axes.axvline(np.degrees(at), color=f"C{4 + i % 5}", linestyle="-.", linewidth=1.0, label=f"{name} under")
+        axes.axvline(
+            np.degrees(at),
+            color=f"C{4 + i % 5}",
+            linestyle="-.",
+            linewidth=1.0,
+            label=f"{name} under",
+        )
     axes.set_xlabel("heel [degrees]")
     axes.set_ylabel("righting arm GZ [m]")
     axes.legend()

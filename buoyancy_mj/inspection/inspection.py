@@ -10,16 +10,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, MeshError
-from buoyancy_mj.hulls.geoms import diagnosis, geom_mesh, hulls_of
-from buoyancy_mj.hulls.hull import OVERLAP, Hull, close_pairs
-from buoyancy_mj.hulls.selection import Considered, body_name, considered, fills_of, geom_kind, geom_name, shapes_of
-from buoyancy_mj.meshes.mesh import TriMesh, solid_of
-from buoyancy_mj.meshes.repair import Diagnosis, convex_of
+from buoyancy_mj.hulls.geoms import build_hulls, diagnose_geom, read_geom_mesh
+from buoyancy_mj.hulls.hull import OVERLAP, Hull, find_close_pairs
+from buoyancy_mj.hulls.selection import (
+    Verdict,
+    body_name,
+    geom_kind,
+    geom_name,
+    judge_geoms,
+    parse_fills,
+    parse_shapes,
+)
+from buoyancy_mj.meshes.mesh import TriMesh, to_manifold
+from buoyancy_mj.meshes.repair import Diagnosis, wrap_convex
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.balance import NEUTRAL, floated
-from buoyancy_mj.statics.equilibrium import Equilibrium, rest, stable_rests
+from buoyancy_mj.statics.balance import NEUTRAL, find_draft
+from buoyancy_mj.statics.equilibrium import Equilibrium, find_rest, find_stable_rests
 from buoyancy_mj.statics.righting import RightingArm, curve
-from buoyancy_mj.statics.vessel import PLAUSIBLE, Vessel, vessel_with
+from buoyancy_mj.statics.vessel import PLAUSIBLE, Vessel, build_vessel_from_hulls
 
 LEVELLED = 1e-4
 """Fall of energy, over weight times radius, below which a vessel rests as drawn."""
@@ -39,7 +47,7 @@ class Part:
     """Name of its body."""
     kind: str
     """'mesh', 'box', 'sphere', ..."""
-    taken: bool
+    displaces: bool
     """Whether it displaces water."""
     reason: str
     """Why, or why not."""
@@ -130,7 +138,7 @@ class Inspection:
     title: str
     """What it is called."""
     water: Water
-    """The water it was inspected in."""
+    """The water it was inspect_model in."""
     parts: tuple[Part, ...]
     """Its geoms."""
     overlaps: tuple[tuple[str, str, float], ...]
@@ -141,7 +149,7 @@ class Inspection:
     """Why a part or the whole cannot be put to sea, with the mend."""
 
 
-def inspected(
+def inspect_model(
     model: mujoco.MjModel,
     water: Water | None = None,
     *,
@@ -164,44 +172,65 @@ def inspected(
         ModelError: no geom displaces water, or a choice that makes no sense.
     """
     sea = water or Water()
-    verdicts = considered(model, geoms)
-    chosen = [verdict.geom for verdict in verdicts if verdict.taken]
-    forms, fills = shapes_of(model, chosen, hull), fills_of(model, chosen, fill)
+    verdicts = judge_geoms(model, geoms)
+    chosen = [verdict.geom for verdict in verdicts if verdict.displaces]
+    forms, fills = parse_shapes(model, chosen, hull), parse_fills(model, chosen, fill)
     problems: list[str] = []
-    parts = [_part(model, verdict, forms.get(verdict.geom) == "convex", fills, problems) for verdict in verdicts]
-    sound = [verdict.geom for verdict, part in zip(verdicts, parts, strict=True) if part.mesh is not None]
+    parts = [
+        _part(model, verdict, forms.get(verdict.geom) == "convex", fills, problems)
+        for verdict in verdicts
+    ]
+    sound = [
+        verdict.geom for verdict, part in zip(verdicts, parts, strict=True) if part.mesh is not None
+    ]
     if not sound:
         return Inspection(title, sea, tuple(parts), (), (), tuple(problems))
     told: list[str] = []
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", BuoyancyWarning)
-        hulls = hulls_of(model, sound, forms, fills)
+        hulls = build_hulls(model, sound, forms, fills)
         # what was mended in meshes stands with them
         mended = {notice for part in parts if part.diagnosis for notice in part.diagnosis.notices}
         told += [str(entry.message) for entry in caught if str(entry.message) not in mended]
     floating = []
     for root in dict.fromkeys(int(model.body_rootid[one.body]) for one in hulls):
         try:
-            floating.append(_floating(vessel_with(model, hulls, sea, body=body_name(model, root)), hulls))
+            floating.append(
+                _floating(
+                    build_vessel_from_hulls(model, hulls, sea, body=body_name(model, root)), hulls
+                )
+            )
         except BuoyancyError as error:
             problems.append(str(error))
-    return Inspection(title, sea, tuple(parts), _overlaps(model, hulls), tuple(floating), (*problems, *told))
+    return Inspection(
+        title, sea, tuple(parts), _overlaps(model, hulls), tuple(floating), (*problems, *told)
+    )
 
 
-def _part(model: mujoco.MjModel, verdict: Considered, convex: bool, fills: dict[int, float], problems: list[str]) -> Part:
+def _part(
+    model: mujoco.MjModel,
+    verdict: Verdict,
+    convex: bool,
+    fills: dict[int, float],
+    problems: list[str],
+) -> Part:
     """A geom as it was found."""
     geom = verdict.geom
     mesh, found, notes = None, None, []
-    if verdict.taken:
-        found = None if convex else diagnosis(model, geom)
-        arrays = geom_mesh(model, geom)
+    if verdict.displaces:
+        found = None if convex else diagnose_geom(model, geom)
+        arrays = read_geom_mesh(model, geom)
         assert arrays is not None
         if found is not None:
             mesh = found.mesh
             problems += [found.refusal] if found.refusal else []
         else:
             try:
-                mesh = convex_of(arrays[0], f"geom '{geom_name(model, geom)}'") if convex else TriMesh(*arrays)
+                mesh = (
+                    wrap_convex(arrays[0], f"geom '{geom_name(model, geom)}'")
+                    if convex
+                    else TriMesh(*arrays)
+                )
             except MeshError as error:
                 problems.append(str(error))
         if found is not None and mesh is not None:
@@ -215,7 +244,7 @@ def _part(model: mujoco.MjModel, verdict: Considered, convex: bool, fills: dict[
         name=geom_name(model, geom),
         body=body_name(model, int(model.geom_bodyid[geom])),
         kind=geom_kind(model, geom),
-        taken=verdict.taken,
+        displaces=verdict.displaces,
         reason=verdict.reason,
         convex=convex,
         fill=fills.get(geom, 1.0),
@@ -228,7 +257,7 @@ def _part(model: mujoco.MjModel, verdict: Considered, convex: bool, fills: dict[
 
 def _walls(mesh: TriMesh) -> list[str]:
     """A closed surface with two sides, whose inside the sea may enter."""
-    whole = convex_of(mesh.compact[0]).volume
+    whole = wrap_convex(mesh.compact[0]).volume
     share, wall = mesh.volume / whole, 2.0 * mesh.volume / mesh.area
     if share < HOLLOW and wall < THIN * whole ** (1.0 / 3.0):
         return [
@@ -242,15 +271,18 @@ def _overlaps(model: mujoco.MjModel, hulls: Sequence[Hull]) -> tuple[tuple[str, 
     """Pairs of hulls of different bodies that overlap where the model has them."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    placed = [hull.mesh.transformed(data.geom_xmat[hull.geom].reshape(3, 3), data.geom_xpos[hull.geom]) for hull in hulls]
+    placed = [
+        hull.mesh.transformed(data.geom_xmat[hull.geom].reshape(3, 3), data.geom_xpos[hull.geom])
+        for hull in hulls
+    ]
     solids = {}
     found = []
-    for i, j in close_pairs(placed):
+    for i, j in find_close_pairs(placed):
         if hulls[i].body == hulls[j].body:
             continue
         for k in (i, j):
             if k not in solids:
-                solids[k] = solid_of(*placed[k].compact)
+                solids[k] = to_manifold(*placed[k].compact)
         one, two = solids[i], solids[j]
         common = (one ^ two).volume() if one is not None and two is not None else 0.0
         if common > OVERLAP * min(placed[i].volume, placed[j].volume):
@@ -267,15 +299,19 @@ def _floating(vessel: Vessel, hulls: Sequence[Hull]) -> Floating:
     righting: RightingArm | None = None
     if vessel.free and surplus >= -NEUTRAL * vessel.mass:
         try:
-            found, all_found = rest(vessel), stable_rests(vessel)
+            found, all_found = find_rest(vessel), find_stable_rests(vessel)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", BuoyancyWarning)
-                righting = curve(vessel, np.radians(np.arange(181.0)), upright=_at(vessel, found).rotation)
+                righting = curve(
+                    vessel, np.radians(np.arange(181.0)), upright=_at(vessel, found).rotation
+                )
             notes += [str(entry.message) for entry in caught]
         except BuoyancyError as error:
             notes.append(str(error))
     shares = _shares(vessel, hulls)
-    return Floating(vessel, shares, _sentence(vessel, surplus, found), found, all_found, righting, tuple(notes))
+    return Floating(
+        vessel, shares, _sentence(vessel, surplus, found), found, all_found, righting, tuple(notes)
+    )
 
 
 def _at(vessel: Vessel, found: Equilibrium) -> Vessel:
@@ -284,7 +320,9 @@ def _at(vessel: Vessel, found: Equilibrium) -> Vessel:
     turn = np.empty(9)
     start = int(vessel.model.jnt_qposadr[vessel.model.body_jntadr[vessel.root]])
     mujoco.mju_quat2Mat(turn, found.qpos[start + 3 : start + 7])
-    return dataclasses.replace(vessel, qpos=found.qpos, position=position, rotation=turn.reshape(3, 3))
+    return dataclasses.replace(
+        vessel, qpos=found.qpos, position=position, rotation=turn.reshape(3, 3)
+    )
 
 
 def _sentence(vessel: Vessel, surplus: float, found: Equilibrium | None) -> str:
@@ -301,7 +339,7 @@ def _sentence(vessel: Vessel, surplus: float, found: Equilibrium | None) -> str:
     lean = math.degrees(math.acos(max(-1.0, min(1.0, math.cos(at.heel) * math.cos(at.trim)))))
     drawn = vessel.rotation[2] @ _at(vessel, found).rotation[2]
     # a ball rests as well as drawn
-    drop = floated(vessel, vessel.rotation).energy - found.energy
+    drop = find_draft(vessel, vessel.rotation).energy - found.energy
     if drop < LEVELLED * vessel.weight * vessel.radius:
         return f"floats: {surplus:.3g} kg reserve, draft {at.draft:.3g} m, {found.stability}, GM {at.GM:.3g} m"
     tipped = "" if drawn > math.cos(math.radians(5.0)) else ", not as drawn"
@@ -334,7 +372,11 @@ def _shares(vessel: Vessel, hulls: Sequence[Hull]) -> tuple[Share, ...]:
     shares = []
     for body in np.unique(model.body_weldid[tree]):
         mass = float(model.body_mass[tree][model.body_weldid[tree] == body].sum())
-        volume = sum(hull.displacement for hull in hulls if hull.body == body)
+        volume = sum(hull.displaced_volume for hull in hulls if hull.body == body)
         if mass > 0.0 or volume > 0.0:
-            shares.append(Share(body_name(model, int(body)), mass, vessel.water.density * volume, vessel.gravity))
+            shares.append(
+                Share(
+                    body_name(model, int(body)), mass, vessel.water.density * volume, vessel.gravity
+                )
+            )
     return tuple(shares)

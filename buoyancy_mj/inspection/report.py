@@ -40,7 +40,9 @@ def sections(found: Inspection) -> tuple[Section, ...]:
         result.append(_meshes(meshes))
     if found.overlaps:
         rows = tuple((one, two, _number(1e3 * volume)) for one, two, volume in found.overlaps)
-        result.append(Section("Overlaps between bodies", ("hull", "hull", "litres counted twice"), rows))
+        result.append(
+            Section("Overlaps between bodies", ("hull", "hull", "litres counted twice"), rows)
+        )
     for floating in found.floating:
         result += _floats(floating)
     if found.problems:
@@ -48,7 +50,7 @@ def sections(found: Inspection) -> tuple[Section, ...]:
     return tuple(result)
 
 
-def renderable(found: Inspection) -> Group:
+def to_tables(found: Inspection) -> Group:
     """The report for a terminal."""
     parts: list[Any] = []
     for section in sections(found):
@@ -78,7 +80,7 @@ def renderable(found: Inspection) -> Group:
     return Group(*parts)
 
 
-def markdown(found: Inspection, pictures: Sequence[tuple[str, str]] = ()) -> str:
+def to_markdown(found: Inspection, pictures: Sequence[tuple[str, str]] = ()) -> str:
     """The report as Markdown, with pictures (caption, file) at its end."""
     lines = [f"# {found.title}", ""]
     for section in sections(found):
@@ -93,13 +95,15 @@ def markdown(found: Inspection, pictures: Sequence[tuple[str, str]] = ()) -> str
     return "\n".join(lines)
 
 
-def plain(found: Inspection) -> dict[str, Any]:
+def to_json(found: Inspection) -> dict[str, Any]:
     """The report as plain values for JSON: SI units, angles in radians, null for what is not a finite number."""
     return {
         "title": found.title,
         "water": {"density": found.water.density, "level": found.water.level},
         "geoms": [_plain_part(part) for part in found.parts],
-        "overlaps": [{"hulls": [one, two], "volume": _value(volume)} for one, two, volume in found.overlaps],
+        "overlaps": [
+            {"hulls": [one, two], "volume": _value(volume)} for one, two, volume in found.overlaps
+        ],
         "floating": [_plain_floating(floating) for floating in found.floating],
         "problems": list(found.problems),
     }
@@ -112,13 +116,22 @@ def _what_displaces(found: Inspection) -> Section:
     rows = []
     for part in found.parts:
         shape = "convex hull" if part.convex else part.kind
-        verdict = "yes" if part.mesh is not None else "refused" if part.taken else "no"
+        verdict = "yes" if part.mesh is not None else "refused" if part.displaces else "no"
         size = ("", "", "")
         if part.mesh is not None and part.centroid is not None:
             size = (_number(1e3 * part.mesh.volume), _number(part.mesh.area), _point(part.centroid))
         flooded = f"{part.fill:.0%} of it" if part.fill < 1.0 else ""
         rows.append((part.name, part.body, shape, f"{verdict}: {part.reason}", *size, flooded))
-    header = ("geom", "body", "shape", "displaces", "volume [l]", "area [m^2]", "centroid [m]", "displacing")
+    header = (
+        "geom",
+        "body",
+        "shape",
+        "displaces",
+        "volume [l]",
+        "area [m^2]",
+        "centroid [m]",
+        "displacing",
+    )
     # what is alike in all rows tells nothing
     kept = [i for i in range(len(header)) if i not in (1, 7) or len({row[i] for row in rows}) > 1]
     cells = tuple(tuple(row[i] for i in kept) for row in rows)
@@ -129,10 +142,24 @@ def _meshes(meshes: Sequence[tuple[Part, Diagnosis]]) -> Section:
     alike: dict[tuple[str, ...], list[str]] = {}
     for part, mesh in meshes:
         size = " x ".join(_number(side) for side in mesh.extents)
-        alike.setdefault((f"{mesh.triangles:,}", str(mesh.pieces), size, _state(mesh)), []).append(part.name)
-    rows = tuple((names[0] + (f" and {len(names) - 1} more" if names[1:] else ""), *cells) for cells, names in alike.items())
-    notes = [text for part, mesh in meshes for text in (*mesh.notices, *(f"{part.name}: {note}" for note in part.notes))]
-    return Section("Meshes", ("geom", "triangles", "pieces", "size [m]", "state"), rows, tuple(dict.fromkeys(notes)))
+        alike.setdefault((f"{mesh.triangles:,}", str(mesh.pieces), size, _state(mesh)), []).append(
+            part.name
+        )
+    rows = tuple(
+        (names[0] + (f" and {len(names) - 1} more" if names[1:] else ""), *cells)
+        for cells, names in alike.items()
+    )
+    notes = [
+        text
+        for part, mesh in meshes
+        for text in (*mesh.notices, *(f"{part.name}: {note}" for note in part.notes))
+    ]
+    return Section(
+        "Meshes",
+        ("geom", "triangles", "pieces", "size [m]", "state"),
+        rows,
+        tuple(dict.fromkeys(notes)),
+    )
 
 
 def _state(mesh: Diagnosis) -> str:
@@ -140,7 +167,9 @@ def _state(mesh: Diagnosis) -> str:
     words = ["watertight" if mesh.pieces and not mesh.holes else "open"]
     if mesh.holes:
         longest = max(hole.length for hole in mesh.holes)
-        words = [f"{len(mesh.holes)} holes, to {_number(longest)} m round, {_number(1e3 * mesh.doubt)} l in doubt"]
+        words = [
+            f"{len(mesh.holes)} holes, to {_number(longest)} m round, {_number(1e3 * mesh.doubt)} l in doubt"
+        ]
     crossing = 1e3 * (mesh.doubled + mesh.inside_out)
     for count, what in (
         (mesh.backwards, f"{mesh.backwards} wound backwards"),
@@ -169,7 +198,14 @@ def _floats(floating: Floating) -> list[Section]:
         f"CG {_point(floating.centre_of_gravity)} m, CB submerged {_point(floating.centre_of_buoyancy)} m in its own frame, "
         f"{_number(round(float(np.linalg.norm(floating.vessel.centroid)), 6))} m apart"
     )
-    result = [Section(f"Will '{total.body}' float?", header, tuple(rows), (floating.sentence, centres, *floating.notes))]
+    result = [
+        Section(
+            f"Will '{total.body}' float?",
+            header,
+            tuple(rows),
+            (floating.sentence, centres, *floating.notes),
+        )
+    ]
     if floating.rest is not None:
         result.append(_at_rest(floating.rest))
         result.append(_rests(floating.rests))
@@ -188,14 +224,30 @@ def _at_rest(found: Equilibrium) -> Section:
         ("volume", _number(1e3 * at.volume), "l"),
         ("wetted area", _number(at.wetted_area), "m^2"),
         ("waterplane area", _number(at.waterplane_area), "m^2"),
-        ("waterline length, beam", f"{_number(at.waterline_length)}, {_number(at.waterline_beam)}", "m"),
+        (
+            "waterline length, beam",
+            f"{_number(at.waterline_length)}, {_number(at.waterline_beam)}",
+            "m",
+        ),
         ("KB, KG, BG", f"{_number(at.KB)}, {_number(at.KG)}, {_number(at.BG)}", "m"),
         ("BM across, along", f"{_number(at.BMt)}, {_number(at.BMl)}", "m"),
         ("GM across, along", f"{_number(at.GMt)}, {_number(at.GMl)}", "m"),
-        ("periods of heave, roll, pitch", ", ".join(map(_number, (heave, roll, pitch))), "s, no added mass"),
+        (
+            "periods of heave, roll, pitch",
+            ", ".join(map(_number, (heave, roll, pitch))),
+            "s, no added mass",
+        ),
         ("stiffness of heave", _number(float(at.stiffness[2, 2])), "N/m"),
-        ("stiffness of roll, pitch", f"{_number(float(at.stiffness[3, 3]))}, {_number(float(at.stiffness[4, 4]))}", "N m"),
-        ("stability", found.stability, "eigenvalues " + ", ".join(map(_number, found.eigenvalues)) + " 1/s^2"),
+        (
+            "stiffness of roll, pitch",
+            f"{_number(float(at.stiffness[3, 3]))}, {_number(float(at.stiffness[4, 4]))}",
+            "N m",
+        ),
+        (
+            "stability",
+            found.stability,
+            "eigenvalues " + ", ".join(map(_number, found.eigenvalues)) + " 1/s^2",
+        ),
     ]
     return Section("At rest", (), tuple(rows))
 
@@ -216,7 +268,11 @@ def _rests(rests: Sequence[Equilibrium]) -> Section:
 def _righting(arm: RightingArm) -> Section:
     heel, largest = arm.maximum
     rows = [
-        ("largest righting arm", _number(largest), f"m at {math.degrees(heel):.0f} degrees of heel"),
+        (
+            "largest righting arm",
+            _number(largest),
+            f"m at {math.degrees(heel):.0f} degrees of heel",
+        ),
         ("angle of vanishing stability", _angle(arm.vanishing), "degrees"),
         ("area under the curve", _number(arm.area()), "m rad"),
         *((f"'{name}' goes under", _angle(at), "degrees") for name, at in arm.immersed.items()),
@@ -267,12 +323,17 @@ def _plain_floating(floating: Floating) -> dict[str, Any]:
         "lift": total.lift,
         "centre_of_gravity": _value(floating.centre_of_gravity),
         "centre_of_buoyancy": _value(floating.centre_of_buoyancy),
-        "bodies": [dataclasses.asdict(share) | {"reserve": share.reserve} for share in floating.shares],
+        "bodies": [
+            dataclasses.asdict(share) | {"reserve": share.reserve} for share in floating.shares
+        ],
         "rest": None if floating.rest is None else _plain_rest(floating.rest),
         "rests": [_plain_rest(one) for one in floating.rests],
         "righting": None
         if floating.righting is None
-        else {name.name: _value(getattr(floating.righting, name.name)) for name in dataclasses.fields(floating.righting)},
+        else {
+            name.name: _value(getattr(floating.righting, name.name))
+            for name in dataclasses.fields(floating.righting)
+        },
         "notes": list(floating.notes),
     }
 
@@ -327,7 +388,10 @@ def _degrees(angle: float, digits: int = 1) -> str:
 def _numeric(rows: Sequence[Sequence[str]], column: int) -> bool:
     """Whether a column holds numbers alone."""
     cells = [row[column].replace(",", "") for row in rows]
-    return all(cell in ("", "-") or cell.lstrip("+-").replace(".", "").replace("e-", "").isdigit() for cell in cells)
+    return all(
+        cell in ("", "-") or cell.lstrip("+-").replace(".", "").replace("e-", "").isdigit()
+        for cell in cells
+    )
 
 
 def _word(rows: Sequence[Sequence[str]], column: int) -> int:

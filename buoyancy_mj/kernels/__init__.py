@@ -35,7 +35,9 @@ class _Patience(event.Listener):  # type: ignore[misc]
         if not self._told and event.data["dispatcher"].py_func.__module__.startswith(__name__):
             self._told = True
             print(
-                "buoyancy_mj: compiling, once per installation; this takes about half a minute", file=sys.stderr, flush=True
+                "buoyancy_mj: compiling, once per installation; this takes about half a minute",
+                file=sys.stderr,
+                flush=True,
             )
 
     def on_end(self, event: Any) -> None:

@@ -56,10 +56,36 @@ def cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
     # turn the triangle so that corner 0 is alone on its side
     alone = int(wet0) + int(wet1) + int(wet2) == 1
     if wet1 == alone and wet0 != alone and wet2 != alone:
-        x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = x1, y1, z1, d1, x2, y2, z2, d2, x0, y0, z0, d0
+        x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = (
+            x1,
+            y1,
+            z1,
+            d1,
+            x2,
+            y2,
+            z2,
+            d2,
+            x0,
+            y0,
+            z0,
+            d0,
+        )
         w0, w1, w2 = w1, w2, w0
     elif wet2 == alone and wet0 != alone and wet1 != alone:
-        x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = x2, y2, z2, d2, x0, y0, z0, d0, x1, y1, z1, d1
+        x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2 = (
+            x2,
+            y2,
+            z2,
+            d2,
+            x0,
+            y0,
+            z0,
+            d0,
+            x1,
+            y1,
+            z1,
+            d1,
+        )
         w0, w1, w2 = w2, w0, w1
     # where its two edges meet the surface
     s, t = w0 / (w0 - w1), w0 / (w0 - w2)
@@ -76,7 +102,11 @@ def cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2):
 @njit(cache=True, error_model="numpy", inline="always")
 def _turned(r, x, y, z):
     """A vector of a frame, turned by the row-major rotation r (9,)."""
-    return r[0] * x + r[1] * y + r[2] * z, r[3] * x + r[4] * y + r[5] * z, r[6] * x + r[7] * y + r[8] * z
+    return (
+        r[0] * x + r[1] * y + r[2] * z,
+        r[3] * x + r[4] * y + r[5] * z,
+        r[6] * x + r[7] * y + r[8] * z,
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -116,7 +146,13 @@ def _approach(waves, origin, r, box, degree, limit, time, swell, flat):
             local.add_series(flat, 0, degree, crest, slope, kx, ky)
             continue
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
-        swell[near, 0], swell[near, 1], swell[near, 2], swell[near, 3], swell[near, 4] = crest, slope, k0, k1, k2
+        swell[near, 0], swell[near, 1], swell[near, 2], swell[near, 3], swell[near, 4] = (
+            crest,
+            slope,
+            k0,
+            k1,
+            k2,
+        )
         swell[near, 5], swell[near, 6] = kx, ky
         near += 1
         eta += crest
@@ -129,7 +165,9 @@ def _approach(waves, origin, r, box, degree, limit, time, swell, flat):
 
 
 @njit(cache=True, error_model="numpy")
-def _add_rest(vertices, first, last, c0, c1, c2, r, swell, waves, flat, degree, smooth, doubled, depths, room):
+def _add_rest(
+    vertices, first, last, c0, c1, c2, r, swell, waves, flat, degree, smooth, doubled, depths, room
+):
     """Add to depths under the plane, of vertices from `first` up to `last`, the rest of the elevation."""
     if smooth:
         for n in range(first, last):
@@ -140,7 +178,9 @@ def _add_rest(vertices, first, last, c0, c1, c2, r, swell, waves, flat, degree, 
         crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
         middle = k0 * c0 + k1 * c1 + k2 * c2
         for n in range(first, last):
-            sine, cosine = bend(k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - middle, doubled)
+            sine, cosine = bend(
+                k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - middle, doubled
+            )
             depths[n - first] += crest * cosine - slope * sine
 
 
@@ -162,7 +202,9 @@ SLIM = 1e-3
 
 
 @njit(cache=True, error_model="numpy")
-def _waterplane(px, py, qx, qy, height, gx, gy, swell, waves, flat, degree, smooth, ray, panels, doubled):
+def _waterplane(
+    px, py, qx, qy, height, gx, gy, swell, waves, flat, degree, smooth, ray, panels, doubled
+):
     """Of the rest e over the triangle from the middle of the hull to a cut p q, all seen from above.
 
     Gives the integrals of e, x e, y e and (plane + e / 2) e. The plane has the `height` over the
@@ -207,7 +249,9 @@ def _walk(
     c0, c1, c2 = hull[5], hull[6], hull[7]
     degree = int(hull[12])
     flat, ray = np.empty(local.FLAT), np.empty(local.MOST + 1)
-    eta, s0, s1, s2, many, reach = _approach(waves, origin, r, hull[5:], degree, hull[13], time, swell, flat)
+    eta, s0, s1, s2, many, reach = _approach(
+        waves, origin, r, hull[5:], degree, hull[13], time, swell, flat
+    )
     wavy, smooth = waves.shape[0] > 0, many < waves.shape[0]
     doubled, panels = doublings(reach), min(max(1, math.ceil(reach / PANEL)), PANELS)
     # the plane, as the depth under it: d + g (x - c)
@@ -227,15 +271,30 @@ def _walk(
             x, y, _ = _turned(r, y0, y1, y2)
             e, sx, sy = local.with_gradient(flat, 0, degree, x, y)
             depth += e
-            h0, h1, h2 = h0 + sx * r[0] + sy * r[3], h1 + sx * r[1] + sy * r[4], h2 + sx * r[2] + sy * r[5]
+            h0, h1, h2 = (
+                h0 + sx * r[0] + sy * r[3],
+                h1 + sx * r[1] + sy * r[4],
+                h2 + sx * r[2] + sy * r[5],
+            )
         for w in range(many):
-            crest, slope, k0, k1, k2 = swell[w, 0], swell[w, 1], swell[w, 2], swell[w, 3], swell[w, 4]
+            crest, slope, k0, k1, k2 = (
+                swell[w, 0],
+                swell[w, 1],
+                swell[w, 2],
+                swell[w, 3],
+                swell[w, 4],
+            )
             angle = k0 * y0 + k1 * y1 + k2 * y2
             sine, cosine = bend(angle, doubled)
             depth += crest * cosine - slope * sine
             change = -slope * cosine - crest * (sine + angle)
             h0, h1, h2 = h0 + change * k0, h1 + change * k1, h2 + change * k2
-        reach = abs(h0) * e0 + abs(h1) * e1 + abs(h2) * e2 + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
+        reach = (
+            abs(h0) * e0
+            + abs(h1) * e1
+            + abs(h2) * e2
+            + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
+        )
         after = spans[i, 4]
         if depth <= -reach:
             i = after
@@ -267,9 +326,27 @@ def _walk(
         base, top = spans[i, 2], spans[i, 3]
         still = d - (g0 * c0 + g1 * c1 + g2 * c2)
         for n in range(base, top):
-            depths[n - base] = still + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
+            depths[n - base] = (
+                still + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
+            )
         if wavy:
-            _add_rest(vertices, base, top, c0, c1, c2, r, swell, many, flat, degree, smooth, doubled, depths, scratch[1:])
+            _add_rest(
+                vertices,
+                base,
+                top,
+                c0,
+                c1,
+                c2,
+                r,
+                swell,
+                many,
+                flat,
+                degree,
+                smooth,
+                doubled,
+                depths,
+                scratch[1:],
+            )
         for f in range(spans[i, 0], spans[i, 1]):
             j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
             w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]
@@ -287,12 +364,28 @@ def _walk(
             if w0 > 0.0 and w1 > 0.0 and w2 > 0.0:
                 some, fraction = _moments(a, x0, y0, z0, d0, x1, y1, z1, d1, x2, y2, z2, d2), 1.0
             else:
-                some, fraction, one, other = cut(a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2)
+                some, fraction, one, other = cut(
+                    a, x0, y0, z0, d0, w0, x1, y1, z1, d1, w1, x2, y2, z2, d2, w2
+                )
                 if wavy:
                     px, py, _ = _turned(r, one[0] - c0, one[1] - c1, one[2] - c2)
                     qx, qy, _ = _turned(r, other[0] - c0, other[1] - c1, other[2] - c2)
                     rest = _waterplane(
-                        px, py, qx, qy, height, gx, gy, swell, many, flat, degree, smooth, ray, panels, doubled
+                        px,
+                        py,
+                        qx,
+                        qy,
+                        height,
+                        gx,
+                        gy,
+                        swell,
+                        many,
+                        flat,
+                        degree,
+                        smooth,
+                        ray,
+                        panels,
+                        doubled,
                     )
                     i0, ix, iy, iz = i0 + rest[0], ix + rest[1], iy + rest[2], iz + rest[3]
             v += some[0]
@@ -359,7 +452,9 @@ def submerge_hulls(
             continue
         if depth >= reach:
             out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], whole[h, 4], 0.0
-            out[h, 1], out[h, 2], out[h, 3] = placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
+            out[h, 1], out[h, 2], out[h, 3] = placed(
+                origin, r, whole[h, 1], whole[h, 2], whole[h, 3]
+            )
             continue
         out[h, 0], out[h, 4], out[h, 5] = 0.0, 0.0, 0.0
         out[h, 1:4] = math.nan
@@ -372,7 +467,13 @@ def submerge_hulls(
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of
         if v >= whole[h, 0]:
             out[h, 0], out[h, 4], out[h, 5] = whole[h, 0], area, p
-            out[h, 1], out[h, 2], out[h, 3] = placed(origin, r, whole[h, 1], whole[h, 2], whole[h, 3])
+            out[h, 1], out[h, 2], out[h, 3] = placed(
+                origin, r, whole[h, 1], whole[h, 2], whole[h, 3]
+            )
         elif v > 1e-14 * whole[h, 0]:
             out[h, 0], out[h, 4], out[h, 5] = v, area, p
-            out[h, 1], out[h, 2], out[h, 3] = origin[0] + mx / v, origin[1] + my / v, origin[2] + mz / v
+            out[h, 1], out[h, 2], out[h, 3] = (
+                origin[0] + mx / v,
+                origin[1] + my / v,
+                origin[2] + mz / v,
+            )

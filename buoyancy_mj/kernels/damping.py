@@ -79,7 +79,14 @@ def add_drag(
         whole = coupled[n] != 0
         at = moving.xpos[b] if whole else centres[b, 1:]
         set_current(moving.current, moving.level - centres[b, 3], moving.time, water)
-        add_velocity(moving.waves, centres[b, 1], centres[b, 2], centres[b, 3] - moving.level, moving.time, water)
+        add_velocity(
+            moving.waves,
+            centres[b, 1],
+            centres[b, 2],
+            centres[b, 3] - moving.level,
+            moving.time,
+            water,
+        )
         relative_velocity(moving, b, at, water, v)
         mass, inertias = rigid_body(moving, n)
         m[:3] = _apparent(mass, inertias, at, moving.xipos[b])
@@ -134,7 +141,10 @@ def add_radiation(
         relative_velocity(moving, b, at, water, v)
         mass, inertias = rigid_body(moving, n)
         heave = r[6] * v[0] + r[7] * v[1] + r[8] * v[2]
-        up = -min(share * radiation[n, 0], _apparent(mass, inertias, at, moving.xipos[b]) * rate) * heave
+        up = (
+            -min(share * radiation[n, 0], _apparent(mass, inertias, at, moving.xipos[b]) * rate)
+            * heave
+        )
         roll = -min(share * radiation[n, 1], inertias[0] * rate) * v[3]
         pitch = -min(share * radiation[n, 2], inertias[1] * rate) * v[4]
         _add(r, at, moving.xipos[b], (up * r[6], up * r[7], up * r[8], roll, pitch, 0.0), out[b])

@@ -17,7 +17,11 @@ def _to_body(r, arm, out):
     """The matrix (6, 6) from MuJoCo's velocities (rotation, translation `arm` off) to translation, rotation along r."""
     for i in range(3):
         a0, a1, a2 = r[i], r[3 + i], r[6 + i]
-        out[i, 0], out[i, 1], out[i, 2] = arm[1] * a2 - arm[2] * a1, arm[2] * a0 - arm[0] * a2, arm[0] * a1 - arm[1] * a0
+        out[i, 0], out[i, 1], out[i, 2] = (
+            arm[1] * a2 - arm[2] * a1,
+            arm[2] * a0 - arm[0] * a2,
+            arm[0] * a1 - arm[1] * a0,
+        )
         out[i, 3], out[i, 4], out[i, 5] = a0, a1, a2
         out[3 + i, 0], out[3 + i, 1], out[3 + i, 2] = a0, a1, a2
         out[3 + i, 3:6] = 0.0
@@ -78,7 +82,14 @@ def add_inertia(
             # the columns of a row are the dof itself, last, and those above it
             for e in range(rowadr[i], rowadr[i] + rownnz[i]):
                 c = cdof[colind[e]]
-                mass[e] += c[0] * u[0] + c[1] * u[1] + c[2] * u[2] + c[3] * u[3] + c[4] * u[4] + c[5] * u[5]
+                mass[e] += (
+                    c[0] * u[0]
+                    + c[1] * u[1]
+                    + c[2] * u[2]
+                    + c[3] * u[3]
+                    + c[4] * u[4]
+                    + c[5] * u[5]
+                )
             i = dof_parents[i]
     return added
 

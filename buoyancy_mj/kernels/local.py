@@ -246,7 +246,15 @@ def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, sea):
             add_series(sea, PRESSURE + layer, degree - 1, k * odd * crest, k * odd * slope, kx, ky)
     if dynamic:
         deepen(sea, PRESSURE, degree)
-    sea[COUNT], sea[MANY], sea[DEGREE], sea[X], sea[Y], sea[MIDDLE], sea[DEPTH] = count, many, degree, x, y, below, depth
+    sea[COUNT], sea[MANY], sea[DEGREE], sea[X], sea[Y], sea[MIDDLE], sea[DEPTH] = (
+        count,
+        many,
+        degree,
+        x,
+        y,
+        below,
+        depth,
+    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -259,7 +267,11 @@ def surface(sea, x, y, time):
         i = NEAR + 6 * w
         phase = sea[i + 1] * x + sea[i + 2] * y - sea[i + 3] * time + sea[i + 4]
         slope = sea[i] * math.sin(phase)
-        eta, along, across = eta + sea[i] * math.cos(phase), along - sea[i + 1] * slope, across - sea[i + 2] * slope
+        eta, along, across = (
+            eta + sea[i] * math.cos(phase),
+            along - sea[i + 1] * slope,
+            across - sea[i + 2] * slope,
+        )
     return eta, along, across
 
 
@@ -292,7 +304,19 @@ def heads(sea, room, count, time, dynamic):
     if sea[COUNT] < sea[MANY]:
         for v in range(count):
             below[v] = stretched(z[v], eta[v], sea[DEPTH]) - sea[MIDDLE]
-        add_solid_at_many(sea, PRESSURE, int(sea[DEGREE]), room[0], room[1], below, count, room[6], room[7], room[8], head)
+        add_solid_at_many(
+            sea,
+            PRESSURE,
+            int(sea[DEGREE]),
+            room[0],
+            room[1],
+            below,
+            count,
+            room[6],
+            room[7],
+            room[8],
+            head,
+        )
     for w in range(int(sea[COUNT])):
         i = NEAR + 6 * w
         k = math.sqrt(sea[i + 1] * sea[i + 1] + sea[i + 2] * sea[i + 2])

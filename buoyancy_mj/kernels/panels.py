@@ -67,13 +67,25 @@ def add_panels(
             i = nodes[h]
             for t in range(spans[i, 0], spans[i, 1]):
                 px, py, pz = placed(
-                    origin, turn, vertices[faces[t, 0], 0], vertices[faces[t, 0], 1], vertices[faces[t, 0], 2]
+                    origin,
+                    turn,
+                    vertices[faces[t, 0], 0],
+                    vertices[faces[t, 0], 1],
+                    vertices[faces[t, 0], 2],
                 )
                 qx, qy, qz = placed(
-                    origin, turn, vertices[faces[t, 1], 0], vertices[faces[t, 1], 1], vertices[faces[t, 1], 2]
+                    origin,
+                    turn,
+                    vertices[faces[t, 1], 0],
+                    vertices[faces[t, 1], 1],
+                    vertices[faces[t, 1], 2],
                 )
                 ox, oy, oz = placed(
-                    origin, turn, vertices[faces[t, 2], 0], vertices[faces[t, 2], 1], vertices[faces[t, 2], 2]
+                    origin,
+                    turn,
+                    vertices[faces[t, 2], 0],
+                    vertices[faces[t, 2], 1],
+                    vertices[faces[t, 2], 2],
                 )
                 dp = level + eta + gx * (px - x) + gy * (py - y) - pz
                 dq = level + eta + gx * (qx - x) + gy * (qy - y) - qz
@@ -84,18 +96,40 @@ def add_panels(
                 if share == 0.0 or size == 0.0:
                     continue
                 nx, ny, nz = nx / size, ny / size, nz / size
-                cx, cy, cz = (px + qx + ox) / 3.0 - at[0], (py + qy + oy) / 3.0 - at[1], (pz + qz + oz) / 3.0 - at[2]
+                cx, cy, cz = (
+                    (px + qx + ox) / 3.0 - at[0],
+                    (py + qy + oy) / 3.0 - at[1],
+                    (pz + qz + oz) / 3.0 - at[2],
+                )
                 wx, wy, wz = spin[0], spin[1], spin[2]
                 ux = vx + wy * cz - wz * cy - water[0]
                 uy = vy + wz * cx - wx * cz - water[1]
                 uz = vz + wx * cy - wy * cx - water[2]
                 into = ux * nx + uy * ny + uz * nz
                 tx, ty, tz = ux - into * nx, uy - into * ny, uz - into * nz
-                along = 0.5 * density * size * share * friction * math.sqrt(tx * tx + ty * ty + tz * tz)
-                square = 0.5 * density * size * share * (panels[n, 0] if into > 0.0 else panels[n, 1]) * abs(into) * into
-                fx, fy, fz = -along * tx - square * nx, -along * ty - square * ny, -along * tz - square * nz
+                along = (
+                    0.5 * density * size * share * friction * math.sqrt(tx * tx + ty * ty + tz * tz)
+                )
+                square = (
+                    0.5
+                    * density
+                    * size
+                    * share
+                    * (panels[n, 0] if into > 0.0 else panels[n, 1])
+                    * abs(into)
+                    * into
+                )
+                fx, fy, fz = (
+                    -along * tx - square * nx,
+                    -along * ty - square * ny,
+                    -along * tz - square * nz,
+                )
                 f[0], f[1], f[2] = f[0] + fx, f[1] + fy, f[2] + fz
-                f[3], f[4], f[5] = f[3] + cy * fz - cz * fy, f[4] + cz * fx - cx * fz, f[5] + cx * fy - cy * fx
+                f[3], f[4], f[5] = (
+                    f[3] + cy * fz - cz * fy,
+                    f[4] + cz * fx - cx * fz,
+                    f[5] + cx * fy - cy * fx,
+                )
         if fastest < 0.0:
             continue
         # its power over a timestep, beside what the body's motion relative to the water holds
@@ -104,7 +138,11 @@ def add_panels(
         push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
         twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
         motion = mass * fastest * fastest + least * (spin[0] ** 2 + spin[1] ** 2 + spin[2] ** 2)
-        change = (push / mass + twist / least) / (rate * rate) if least > 0.0 and mass > 0.0 else math.inf
+        change = (
+            (push / mass + twist / least) / (rate * rate)
+            if least > 0.0 and mass > 0.0
+            else math.inf
+        )
         held = math.sqrt(motion / change) if change > motion else 1.0
         for c in range(6):
             out[b, c] += held * f[c]

@@ -76,9 +76,36 @@ def _strew(p, q, o, area, points, count, sea, origin, time, dynamic, most, sums)
         # the middles of the edges, exact for quadratics
         if count > PLACES - 3:
             count = _sum_up(points, count, sea, origin, time, dynamic, sums)
-        _put(points, count, sea, 0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1]), 0.5 * (p[2] + q[2]), 1.0 / 3.0, area)
-        _put(points, count + 1, sea, 0.5 * (q[0] + o[0]), 0.5 * (q[1] + o[1]), 0.5 * (q[2] + o[2]), 1.0 / 3.0, area)
-        _put(points, count + 2, sea, 0.5 * (o[0] + p[0]), 0.5 * (o[1] + p[1]), 0.5 * (o[2] + p[2]), 1.0 / 3.0, area)
+        _put(
+            points,
+            count,
+            sea,
+            0.5 * (p[0] + q[0]),
+            0.5 * (p[1] + q[1]),
+            0.5 * (p[2] + q[2]),
+            1.0 / 3.0,
+            area,
+        )
+        _put(
+            points,
+            count + 1,
+            sea,
+            0.5 * (q[0] + o[0]),
+            0.5 * (q[1] + o[1]),
+            0.5 * (q[2] + o[2]),
+            1.0 / 3.0,
+            area,
+        )
+        _put(
+            points,
+            count + 2,
+            sea,
+            0.5 * (o[0] + p[0]),
+            0.5 * (o[1] + p[1]),
+            0.5 * (o[2] + p[2]),
+            1.0 / 3.0,
+            area,
+        )
         return count + 3
     n = min(max(1, math.ceil(most * longest / PIECE)), PIECES)
     for i in range(n):
@@ -92,7 +119,11 @@ def _strew(p, q, o, area, points, count, sea, origin, time, dynamic, most, sums)
                     if flipped:
                         s, t = (i + 1 - first) / n, (j + 1 - second) / n
                     u = 1.0 - s - t
-                    x, y, z = s * p[0] + t * q[0] + u * o[0], s * p[1] + t * q[1] + u * o[1], s * p[2] + t * q[2] + u * o[2]
+                    x, y, z = (
+                        s * p[0] + t * q[0] + u * o[0],
+                        s * p[1] + t * q[1] + u * o[1],
+                        s * p[2] + t * q[2] + u * o[2],
+                    )
                     _put(points, count, sea, x, y, z, weight / (n * n), area)
                     count += 1
     return count
@@ -111,7 +142,9 @@ def _sum_up(points, count, sea, origin, time, dynamic, sums):
     heads(sea, points, count, time, dynamic)
     ox, oy, oz = origin[0] - sea[local.X], origin[1] - sea[local.Y], origin[2]
     for n in range(count):
-        fx, fy, fz = _part(points[HEAD, n], (points[ROOM, n], points[ROOM + 1, n], points[ROOM + 2, n]))
+        fx, fy, fz = _part(
+            points[HEAD, n], (points[ROOM, n], points[ROOM + 1, n], points[ROOM + 2, n])
+        )
         x, y, z = points[0, n] - ox, points[1, n] - oy, points[2, n] - oz
         sums[0], sums[1], sums[2] = sums[0] + fx, sums[1] + fy, sums[2] + fz
         sums[3] += y * fz - z * fy
@@ -145,9 +178,15 @@ def _strew_wet(p, q, o, dp, dq, do, area, points, count, sea, origin, time, dyna
     s, t = dp / (dp - dq), dp / (dp - do)
     a, b = _between(p, q, s), _between(p, o, t)
     if alone:
-        return _strew(p, a, b, _part(s * t, area), points, count, sea, origin, time, dynamic, most, sums)
-    count = _strew(a, q, o, _part(1.0 - s, area), points, count, sea, origin, time, dynamic, most, sums)
-    return _strew(a, o, b, _part(s * (1.0 - t), area), points, count, sea, origin, time, dynamic, most, sums)
+        return _strew(
+            p, a, b, _part(s * t, area), points, count, sea, origin, time, dynamic, most, sums
+        )
+    count = _strew(
+        a, q, o, _part(1.0 - s, area), points, count, sea, origin, time, dynamic, most, sums
+    )
+    return _strew(
+        a, o, b, _part(s * (1.0 - t), area), points, count, sea, origin, time, dynamic, most, sums
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -162,7 +201,11 @@ def _ask(b, size, origin, r, level, sea, asked, first):
     for n in range(len(_STENCIL)):
         i, j, k = _STENCIL[n]
         x, y, z = placed(origin, r, b[0] + s * i, b[1] + s * j, b[2] + s * k)
-        asked[0, first + n], asked[1, first + n], asked[2, first + n] = x - sea[local.X], y - sea[local.Y], z - level
+        asked[0, first + n], asked[1, first + n], asked[2, first + n] = (
+            x - sea[local.X],
+            y - sea[local.Y],
+            z - level,
+        )
 
 
 @njit(cache=True, error_model="numpy")
@@ -172,14 +215,24 @@ def _node(m, b, head, first, sums):
     The heads at its places stand in a row from `first`.
     """
     s = math.sqrt((b[3] * b[3] + b[4] * b[4] + b[5] * b[5]) / 3.0)
-    p, px, nx, py, ny = head[first], head[first + 1], head[first + 2], head[first + 3], head[first + 4]
+    p, px, nx, py, ny = (
+        head[first],
+        head[first + 1],
+        head[first + 2],
+        head[first + 3],
+        head[first + 4],
+    )
     pz, nz = head[first + 5], head[first + 6]
     xy, xz = head[first + 7] + head[first + 8], head[first + 9] + head[first + 10]
     yz = head[first + 11] + head[first + 12]
     # its gradient, and half its second derivatives, those across once for both
     step, square = 0.5 / s, 0.5 / (s * s)
     g0, g1, g2 = step * (px - nx), step * (py - ny), step * (pz - nz)
-    h00, h11, h22 = square * (px + nx - 2.0 * p), square * (py + ny - 2.0 * p), square * (pz + nz - 2.0 * p)
+    h00, h11, h22 = (
+        square * (px + nx - 2.0 * p),
+        square * (py + ny - 2.0 * p),
+        square * (pz + nz - 2.0 * p),
+    )
     h01 = square * (xy - px - nx - py - ny + 2.0 * p)
     h02 = square * (xz - px - nx - pz - nz + 2.0 * p)
     h12 = square * (yz - py - ny - pz - nz + 2.0 * p)
@@ -275,7 +328,9 @@ def press_hulls(
         eta, spread, curvature = swing(waves, x, y, time, radius)
         if level + eta - z <= -radius - spread:
             continue
-        gather(waves, x, y, z - level, eta, time, radius, int(whole[h, 12]), whole[h, 13], dynamic, sea)
+        gather(
+            waves, x, y, z - level, eta, time, radius, int(whole[h, 12]), whole[h, 13], dynamic, sea
+        )
         # triangles in the world, nodes in the frame; both about its origin
         sums[:], turned[:] = 0.0, 0.0
         base = (origin[0], origin[1], origin[2] - level)
@@ -297,10 +352,14 @@ def press_hulls(
                 i = after
                 continue
             wet = depth >= reach
-            most = typical[int(min((depth - reach) * typical[0], DEPTHS - 1.0)) if wet and dynamic else 0]
+            most = typical[
+                int(min((depth - reach) * typical[0], DEPTHS - 1.0)) if wet and dynamic else 0
+            ]
             if wet and most * size <= SMALL and size > 0.0:
                 if many == waiting.shape[0]:
-                    many = _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)
+                    many = _sum_up_nodes(
+                        moments, boxes, waiting, many, asked, sea, time, dynamic, turned
+                    )
                 _ask(boxes[i], size, origin, r, level, sea, asked, many * len(_STENCIL))
                 waiting[many] = i
                 many += 1
@@ -311,7 +370,9 @@ def press_hulls(
                 continue
             first, last = spans[i, 2], spans[i, 3]
             for n in range(0 if wet else last - first):
-                x, y, z = placed(base, r, vertices[first + n, 0], vertices[first + n, 1], vertices[first + n, 2])
+                x, y, z = placed(
+                    base, r, vertices[first + n, 0], vertices[first + n, 1], vertices[first + n, 2]
+                )
                 corners[0, n], corners[1, n], corners[2, n] = x - sea[local.X], y - sea[local.Y], z
             if not wet:
                 elevations(sea, corners, last - first, time)
@@ -326,11 +387,16 @@ def press_hulls(
                 q = placed(base, r, vertices[k, 0], vertices[k, 1], vertices[k, 2])
                 s = placed(base, r, vertices[o, 0], vertices[o, 1], vertices[o, 2])
                 area = _area(r, areas[f])
-                count = _strew_wet(p, q, s, dj, dk, do, area, points, count, sea, base, time, dynamic, most, sums)
+                count = _strew_wet(
+                    p, q, s, dj, dk, do, area, points, count, sea, base, time, dynamic, most, sums
+                )
             i = after
         _sum_up(points, count, sea, base, time, dynamic, sums)
         _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)
-        force, torque = _area(r, (turned[0], turned[1], turned[2])), _area(r, (turned[3], turned[4], turned[5]))
+        force, torque = (
+            _area(r, (turned[0], turned[1], turned[2])),
+            _area(r, (turned[3], turned[4], turned[5])),
+        )
         for c in range(3):
             out[h, c], out[h, 3 + c] = -(sums[c] + force[c]), -(sums[3 + c] + torque[c])
 

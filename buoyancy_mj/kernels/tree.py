@@ -148,13 +148,21 @@ def measure(corners, spans, boxes, moments):
                 total[k] = y[0, k] + y[1, k] + y[2, k]
             for k in range(3):
                 p, q = (k + 1) % 3, (k + 2) % 3
-                area[k] = 0.5 * ((y[1, p] - y[0, p]) * (y[2, q] - y[0, q]) - (y[1, q] - y[0, q]) * (y[2, p] - y[0, p]))
+                area[k] = 0.5 * (
+                    (y[1, p] - y[0, p]) * (y[2, q] - y[0, q])
+                    - (y[1, q] - y[0, q]) * (y[2, p] - y[0, p])
+                )
             for k in range(3):
                 row[k] += area[k]
                 for a in range(3):
                     row[3 + 3 * a + k] += total[a] / 3.0 * area[k]
                 for m in range(6):
                     a, b = (m, m) if m < 3 else ((0, 1) if m == 3 else (0, 2) if m == 4 else (1, 2))
-                    mean = total[a] * total[b] + y[0, a] * y[0, b] + y[1, a] * y[1, b] + y[2, a] * y[2, b]
+                    mean = (
+                        total[a] * total[b]
+                        + y[0, a] * y[0, b]
+                        + y[1, a] * y[1, b]
+                        + y[2, a] * y[2, b]
+                    )
                     row[12 + 3 * m + k] += mean / 12.0 * area[k]
             row[30] += math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2)

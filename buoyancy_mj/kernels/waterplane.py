@@ -54,7 +54,9 @@ def waterplanes(
                 continue
             base = spans[i, 2]
             for n in range(base, spans[i, 3]):
-                depths[n - base] = still - (r[6] * vertices[n, 0] + r[7] * vertices[n, 1] + r[8] * vertices[n, 2])
+                depths[n - base] = still - (
+                    r[6] * vertices[n, 0] + r[7] * vertices[n, 1] + r[8] * vertices[n, 2]
+                )
             for f in range(spans[i, 0], spans[i, 1]):
                 j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
                 w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]

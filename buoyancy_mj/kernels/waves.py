@@ -15,7 +15,9 @@ def elevation(waves, x, y, time):
     """Sum of the rows' elevations [m] above the still level at one horizontal point."""
     total = 0.0
     for i in range(waves.shape[0]):
-        total += waves[i, 0] * math.cos(waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4])
+        total += waves[i, 0] * math.cos(
+            waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4]
+        )
     return total
 
 
@@ -26,7 +28,11 @@ def tangent(waves, x, y, time):
     for i in range(waves.shape[0]):
         angle = waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4]
         slope = waves[i, 0] * math.sin(angle)
-        eta, along, across = eta + waves[i, 0] * math.cos(angle), along - waves[i, 1] * slope, across - waves[i, 2] * slope
+        eta, along, across = (
+            eta + waves[i, 0] * math.cos(angle),
+            along - waves[i, 1] * slope,
+            across - waves[i, 2] * slope,
+        )
     return eta, along, across
 
 
@@ -42,7 +48,12 @@ def swing(waves, x, y, time, radius):
         hxx, hxy, hyy = hxx - crest * kx * kx, hxy - crest * kx * ky, hyy - crest * ky * ky
         k = math.sqrt(kx * kx + ky * ky)
         a = abs(a)
-        height, steepness, curvature, twist = height + a, steepness + a * k, curvature + a * k * k, twist + a * k * k * k
+        height, steepness, curvature, twist = (
+            height + a,
+            steepness + a * k,
+            curvature + a * k * k,
+            twist + a * k * k * k,
+        )
     # that at the place, and by how much it can differ elsewhere
     curvature = min(curvature, math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius)
     steepness = min(steepness, math.hypot(along, across) + curvature * radius)
@@ -62,8 +73,15 @@ def head(waves, x, y, z, time, dynamic):
         return eta - z
     total = -z
     for i in range(waves.shape[0]):
-        a = waves[i, 0] * math.cos(waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4])
-        total += a * fade(math.hypot(waves[i, 1], waves[i, 2]), waves[i, 5], stretched(z, eta, waves[i, 5]))[0]
+        a = waves[i, 0] * math.cos(
+            waves[i, 1] * x + waves[i, 2] * y - waves[i, 3] * time + waves[i, 4]
+        )
+        total += (
+            a
+            * fade(
+                math.hypot(waves[i, 1], waves[i, 2]), waves[i, 5], stretched(z, eta, waves[i, 5])
+            )[0]
+        )
     return total
 
 
@@ -91,8 +109,12 @@ def fade(k, depth, z):
 SHORT = 1.6
 """Angle [rad] for which the series of `bend` hold; twice that, and four times that, by doubling."""
 # one over factorials, of the odd and of the even terms
-_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17, _S19, _S21 = ((-1) ** n / math.factorial(2 * n + 1) for n in range(1, 11))
-_C2, _C4, _C6, _C8, _C10, _C12, _C14, _C16, _C18 = ((-1) ** n / math.factorial(2 * n) for n in range(1, 10))
+_S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17, _S19, _S21 = (
+    (-1) ** n / math.factorial(2 * n + 1) for n in range(1, 11)
+)
+_C2, _C4, _C6, _C8, _C10, _C12, _C14, _C16, _C18 = (
+    (-1) ** n / math.factorial(2 * n) for n in range(1, 10)
+)
 
 
 @njit(cache=True, error_model="numpy")
@@ -113,10 +135,16 @@ def bend(angle, doubled):
     cosine = _C10 + x * (_C12 + x * (_C14 + x * (_C16 + x * _C18)))
     cosine = x * (_C2 + x * (_C4 + x * (_C6 + x * (_C8 + x * cosine))))
     if doubled >= 1:
-        sine, cosine = 2.0 * (sine + angle * cosine + sine * cosine), -2.0 * (sine + angle) * (sine + angle)
+        sine, cosine = (
+            2.0 * (sine + angle * cosine + sine * cosine),
+            -2.0 * (sine + angle) * (sine + angle),
+        )
     if doubled == 2:
         angle *= 2.0
-        sine, cosine = 2.0 * (sine + angle * cosine + sine * cosine), -2.0 * (sine + angle) * (sine + angle)
+        sine, cosine = (
+            2.0 * (sine + angle * cosine + sine * cosine),
+            -2.0 * (sine + angle) * (sine + angle),
+        )
     return sine, cosine
 
 

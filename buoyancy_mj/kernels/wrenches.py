@@ -79,7 +79,11 @@ def project(
         fx, fy, fz = wrench[b, 0], wrench[b, 1], wrench[b, 2]
         # the torque about the point that the joints' axes are given at
         root = roots[b]
-        x, y, z = xipos[b, 0] - subtree_com[root, 0], xipos[b, 1] - subtree_com[root, 1], xipos[b, 2] - subtree_com[root, 2]
+        x, y, z = (
+            xipos[b, 0] - subtree_com[root, 0],
+            xipos[b, 1] - subtree_com[root, 1],
+            xipos[b, 2] - subtree_com[root, 2],
+        )
         tx = wrench[b, 3] + y * fz - z * fy
         ty = wrench[b, 4] + z * fx - x * fz
         tz = wrench[b, 5] + x * fy - y * fx

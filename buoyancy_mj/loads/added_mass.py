@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import elliprd
 
 from buoyancy_mj.errors import ModelError, choices
-from buoyancy_mj.hulls.custom import body_of, stated
+from buoyancy_mj.hulls.custom import find_body, read_custom
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -34,8 +34,11 @@ class AddedMass:
     about its origin."""
 
 
-def added_masses(
-    model: mujoco.MjModel, hulls: Sequence[Hull], density: float, source: str | Mapping[str, ArrayLike] | None = "model"
+def resolve_added_mass(
+    model: mujoco.MjModel,
+    hulls: Sequence[Hull],
+    density: float,
+    source: str | Mapping[str, ArrayLike] | None = "model",
 ) -> AddedMass:
     """The added mass of the bodies that have hulls.
 
@@ -52,19 +55,28 @@ def added_masses(
     bodies = sorted({hull.body for hull in hulls})
     given: dict[int, NDArray[np.float64]] = {}
     if isinstance(source, Mapping):
-        given = {body_of(model, name, bodies, QUANTITY): _matrix(name, value) for name, value in source.items()}
+        given = {
+            find_body(model, name, bodies, QUANTITY): _matrix(name, value)
+            for name, value in source.items()
+        }
     elif source not in (None, *SOURCES):
-        raise ModelError(f"added mass is '{source}'; {choices(source, SOURCES)}, or matrices by body")
+        raise ModelError(
+            f"added mass is '{source}'; {choices(source, SOURCES)}, or matrices by body"
+        )
     elif source in ("model", "estimate"):
-        numbers = stated(model, QUANTITY, bodies)
+        numbers = read_custom(model, QUANTITY, bodies)
         given = {body: _matrix(body_name(model, body), value) for body, value in numbers.items()}
     if source == "estimate":
-        estimates = {body: estimated([h for h in hulls if h.body == body], density) for body in bodies if body not in given}
+        estimates = {
+            body: estimate_added_mass([h for h in hulls if h.body == body], density)
+            for body in bodies
+            if body not in given
+        }
         given |= estimates
     for body, matrix in given.items():
         _check_fit(model, body, matrix)
     chosen = sorted(given)
-    volumes = [sum(hull.displacement for hull in hulls if hull.body == body) for body in chosen]
+    volumes = [sum(hull.displaced_volume for hull in hulls if hull.body == body) for body in chosen]
     return AddedMass(
         np.array(chosen, np.int64),
         np.array(volumes, float),
@@ -72,12 +84,12 @@ def added_masses(
     )
 
 
-def estimated(hulls: Sequence[Hull], density: float) -> NDArray[np.float64]:
+def estimate_added_mass(hulls: Sequence[Hull], density: float) -> NDArray[np.float64]:
     """Added mass (6, 6) of a body about its origin: that of the ellipsoid with the second moments of its hulls' volume.
 
     An estimate for compact bodies; frames, ducts and thin plates carry more water along than it knows.
     """
-    shares = np.array([hull.displacement for hull in hulls])
+    shares = np.array([hull.displaced_volume for hull in hulls])
     volume = shares.sum()
     centre = shares @ [hull.mesh_in_body.centroid for hull in hulls] / volume
     spread = sum(hull.fill * _second_moments(hull.mesh_in_body, centre) for hull in hulls) / volume
@@ -89,14 +101,14 @@ def estimated(hulls: Sequence[Hull], density: float) -> NDArray[np.float64]:
     whole = np.zeros((6, 6))
     turn = np.zeros((6, 6))
     turn[:3, :3] = turn[3:, 3:] = axes
-    whole[:, :] = turn @ np.diag(ellipsoid(radii, density)) @ turn.T
+    whole[:, :] = turn @ np.diag(ellipsoid_added_mass(radii, density)) @ turn.T
     # from the middle to the origin: the velocity there is v + w x centre
     shift = np.eye(6)
     shift[:3, 3:] = _cross(centre).T
     return shift.T @ whole @ shift
 
 
-def ellipsoid(radii: ArrayLike, density: float) -> NDArray[np.float64]:
+def ellipsoid_added_mass(radii: ArrayLike, density: float) -> NDArray[np.float64]:
     """Added mass (6,) [kg, kg m^2] of an ellipsoid of radii (3,) [m] along and about its axes.
 
     Lamb, Hydrodynamics (1932), art. 114, 115; the integrals by Carlson's R_D.
@@ -105,7 +117,10 @@ def ellipsoid(radii: ArrayLike, density: float) -> NDArray[np.float64]:
     mass = density * 4.0 / 3.0 * math.pi * a.prod()
     squares = a * a
     alpha = np.array(
-        [2.0 / 3.0 * a.prod() * elliprd(squares[(i + 1) % 3], squares[(i + 2) % 3], squares[i]) for i in range(3)]
+        [
+            2.0 / 3.0 * a.prod() * elliprd(squares[(i + 1) % 3], squares[(i + 2) % 3], squares[i])
+            for i in range(3)
+        ]
     )
     result = np.empty(6)
     result[:3] = mass * alpha / (2.0 - alpha)
@@ -126,17 +141,23 @@ def _matrix(name: str, value: ArrayLike) -> NDArray[np.float64]:
     try:
         given = np.asarray(value, float)
     except (TypeError, ValueError) as error:
-        raise ModelError(f"the added mass of body '{name}' is {value!r}; it must be 6 numbers or a 6 x 6 matrix") from error
+        raise ModelError(
+            f"the added mass of body '{name}' is {value!r}; it must be 6 numbers or a 6 x 6 matrix"
+        ) from error
     if not np.isfinite(given).all():
         raise ModelError(
             f"the added mass of body '{name}' holds {given[~np.isfinite(given)][0]}; its numbers must be finite"
         )
     if given.size not in (6, 36):
-        raise ModelError(f"the added mass of body '{name}' has {given.size} numbers; it must be 6, its diagonal, or all 36")
+        raise ModelError(
+            f"the added mass of body '{name}' has {given.size} numbers; it must be 6, its diagonal, or all 36"
+        )
     matrix = np.diag(given.ravel()) if given.size == 6 else given.reshape(6, 6)
     scale = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix)))) + 1e-12
     if (np.abs(matrix - matrix.T) > 1e-6 * scale).any():
-        raise ModelError(f"the added mass of body '{name}' is not symmetric; average it with its transpose")
+        raise ModelError(
+            f"the added mass of body '{name}' is not symmetric; average it with its transpose"
+        )
     least = float(np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[0])
     if least < -1e-9 * float(np.abs(matrix).max()):
         raise ModelError(
@@ -165,7 +186,9 @@ def _second_moments(mesh: TriMesh, centre: NDArray[np.float64]) -> NDArray[np.fl
     corners = np.stack(mesh.corners, axis=1) - centre
     volumes = np.linalg.det(corners) / 6.0
     sums = corners.sum(axis=1)
-    squares = np.einsum("n,nij,nik->jk", volumes, corners, corners) + np.einsum("n,nj,nk->jk", volumes, sums, sums)
+    squares = np.einsum("n,nij,nik->jk", volumes, corners, corners) + np.einsum(
+        "n,nj,nk->jk", volumes, sums, sums
+    )
     return squares / 20.0
 
 

@@ -49,7 +49,9 @@ class Dataset:
         Raises:
             ModelError: see `read_coefficients`; or a `body` for a dataset of several.
         """
-        found = read_coefficients(folder / self.file, self.period, submerged=self.submerged, centre=self.centre)
+        found = read_coefficients(
+            folder / self.file, self.period, submerged=self.submerged, centre=self.centre
+        )
         if self.body is None:
             return found
         if len(found) > 1:
@@ -91,7 +93,9 @@ def read_coefficients(
         centre = data["rotation_center"].values if "rotation_center" in data else np.zeros(3)
     about = np.asarray(centre, float).reshape(-1)
     if about.shape != (3,) or not np.isfinite(about).all():
-        raise ModelError(f"the centre of rotation of '{path}' is {about.tolist()}; give one of three numbers (centre=)")
+        raise ModelError(
+            f"the centre of rotation of '{path}' is {about.tolist()}; give one of three numbers (centre=)"
+        )
     chosen = data.isel(omega=nearest) if "omega" in data["added_mass"].dims else data
     names = [str(name) for name in chosen["radiating_dof"].values]
     found = {}
@@ -99,23 +103,37 @@ def read_coefficients(
         dofs = {dof: f"{body}__{dof}" if body else dof for dof in DOFS}
         there = [i for i, dof in enumerate(DOFS) if dofs[dof] in names]
         if not there:
-            raise ModelError(f"'{path}' moves '{body}' by none of {', '.join(DOFS)}; it has {', '.join(names)}")
+            raise ModelError(
+                f"'{path}' moves '{body}' by none of {', '.join(DOFS)}; it has {', '.join(names)}"
+            )
         labels = [dofs[DOFS[i]] for i in there]
         whole = {}
         for name in ("added_mass", "radiation_damping"):
             whole[name] = np.zeros((6, 6))
             block = (
-                chosen[name].sel(influenced_dof=labels, radiating_dof=labels).transpose("influenced_dof", "radiating_dof")
+                chosen[name]
+                .sel(influenced_dof=labels, radiating_dof=labels)
+                .transpose("influenced_dof", "radiating_dof")
             )
             whole[name][np.ix_(there, there)] = np.asarray(block.values, float)
             if not np.isfinite(whole[name]).all():
-                raise ModelError(f"'{path}' holds {name} that is no finite number at {omegas[nearest]:.4g} rad/s")
+                raise ModelError(
+                    f"'{path}' holds {name} that is no finite number at {omegas[nearest]:.4g} rad/s"
+                )
         # from the centre to the origin: the velocity there is v + w x centre
         shift = np.eye(6)
-        shift[:3, 3:] = [[0.0, about[2], -about[1]], [-about[2], 0.0, about[0]], [about[1], -about[0], 0.0]]
+        shift[:3, 3:] = [
+            [0.0, about[2], -about[1]],
+            [-about[2], 0.0, about[0]],
+            [about[1], -about[0], 0.0],
+        ]
         added = shift.T @ (0.5 * (whole["added_mass"] + whole["added_mass"].T)) @ shift / submerged
-        label = body or (str(data["body"].values) if "body" in data and data["body"].ndim == 0 else "body")
-        found[label] = Coefficients(float(omegas[nearest]), added, np.diag(whole["radiation_damping"])[2:5].copy())
+        label = body or (
+            str(data["body"].values) if "body" in data and data["body"].ndim == 0 else "body"
+        )
+        found[label] = Coefficients(
+            float(omegas[nearest]), added, np.diag(whole["radiation_damping"])[2:5].copy()
+        )
     return found
 
 
@@ -130,7 +148,10 @@ def state_coefficients(spec: mujoco.MjSpec, coefficients: Mapping[str, Coefficie
     for name, given in coefficients.items():
         if name not in bodies:
             raise ModelError(f"the model has no body '{name}'; {choices(name, bodies)}")
-        for quantity, values in (("added_mass", given.added_mass.ravel()), ("radiation_damping", given.radiation)):
+        for quantity, values in (
+            ("added_mass", given.added_mass.ravel()),
+            ("radiation_damping", given.radiation),
+        ):
             if f"{quantity}:{name}" not in numerics:
                 spec.add_numeric(name=f"{quantity}:{name}", data=values.tolist(), size=len(values))
 
@@ -145,10 +166,16 @@ def _opened(path: Path) -> Any:
         with xarray.open_dataset(path) as opened:
             data = opened.load()
     except ImportError as error:
-        raise ModelError(f"reading '{path}' needs xarray and h5py: pip install 'buoyancy_mj[coefficients]'") from error
+        raise ModelError(
+            f"reading '{path}' needs xarray and h5py: pip install 'buoyancy_mj[coefficients]'"
+        ) from error
     except (OSError, ValueError, TypeError) as error:
-        raise ModelError(f"the dataset '{path}' cannot be read: {str(error).splitlines()[0]}") from error
+        raise ModelError(
+            f"the dataset '{path}' cannot be read: {str(error).splitlines()[0]}"
+        ) from error
     for name in ("added_mass", "radiation_damping", "omega", "radiating_dof", "influenced_dof"):
         if name not in data and name not in data.coords:
-            raise ModelError(f"the dataset '{path}' has no '{name}'; it has {', '.join(map(str, data.variables))}")
+            raise ModelError(
+                f"the dataset '{path}' has no '{name}'; it has {', '.join(map(str, data.variables))}"
+            )
     return data

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ModelError
-from buoyancy_mj.hulls.custom import stated
+from buoyancy_mj.hulls.custom import read_custom
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels.rays import silhouette
@@ -70,21 +70,33 @@ class Drag:
     def __post_init__(self) -> None:
         for name in ("viscous", "radiation", "panels"):
             if not isinstance(getattr(self, name), bool):
-                raise ModelError(f"drag {name} is {getattr(self, name)!r}; it must be true or false")
+                raise ModelError(
+                    f"drag {name} is {getattr(self, name)!r}; it must be true or false"
+                )
         if self.panels and not self.viscous:
-            raise ModelError("drag has panels, but viscous is false, and panels are viscous drag; leave out one of them")
+            raise ModelError(
+                "drag has panels, but viscous is false, and panels are viscous drag; leave out one of them"
+            )
         if self.panels and isinstance(self.viscosity, float) and self.viscosity == 0.0:
-            raise ModelError("drag viscosity is 0; panels need one, 1.19e-6 for sea water at 15 degrees Celsius")
+            raise ModelError(
+                "drag viscosity is 0; panels need one, 1.19e-6 for sea water at 15 degrees Celsius"
+            )
         for field in dataclasses.fields(self):
             if field.type in (bool, "bool"):
                 continue
             value = getattr(self, field.name)
-            if isinstance(value, bool) or not isinstance(value, int | float) or not 0.0 <= value < math.inf:
-                raise ModelError(f"drag {field.name} is {value!r}; it must be a finite number of at least 0")
+            if (
+                isinstance(value, bool)
+                or not isinstance(value, int | float)
+                or not 0.0 <= value < math.inf
+            ):
+                raise ModelError(
+                    f"drag {field.name} is {value!r}; it must be a finite number of at least 0"
+                )
 
 
 @dataclasses.dataclass(frozen=True)
-class Damping:
+class DampingArrays:
     """Damping of all bodies that have hulls, along the axes of each body: three forces, three torques."""
 
     bodies: NDArray[np.int64]
@@ -114,7 +126,9 @@ class Damping:
         return bool(self.radiation.any())
 
 
-def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density: float) -> Damping:
+def resolve_damping(
+    drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density: float
+) -> DampingArrays:
     """The damping that `drag` estimates for the bodies of `hulls` in water of a density [kg/m^3]."""
     gravity = float(np.linalg.norm(model.opt.gravity))
     bodies = sorted({hull.body for hull in hulls})
@@ -122,8 +136,10 @@ def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density:
     linear, quadratic = np.zeros((2, len(bodies), 6))
     coupled, matrices = np.zeros(len(bodies), np.int64), np.zeros((len(bodies), 72))
     radiation, panels = np.zeros((len(bodies), 4)), np.zeros((len(bodies), 5))
-    own_linear, own_quadratic = (stated(model, f"{kind}_damping", bodies) for kind in ("linear", "quadratic"))
-    made = stated(model, "radiation_damping", bodies) if drag.radiation else {}
+    own_linear, own_quadratic = (
+        read_custom(model, f"{kind}_damping", bodies) for kind in ("linear", "quadratic")
+    )
+    made = read_custom(model, "radiation_damping", bodies) if drag.radiation else {}
     members = [np.flatnonzero(model.body_weldid == body) for body in bodies]
     for row, body in enumerate(bodies):
         mass = float(model.body_mass[members[row]].sum())
@@ -134,7 +150,7 @@ def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density:
             )
         own = [hull for hull in hulls if hull.body == body]
         meshes = [hull.mesh_in_body for hull in own]
-        whole = np.array([hull.displacement for hull in own])
+        whole = np.array([hull.displaced_volume for hull in own])
         volumes[row] = whole.sum()
         centre = whole @ [mesh.centroid for mesh in meshes] / volumes[row]
         if body in made:
@@ -151,17 +167,25 @@ def estimated(drag: Drag, model: mujoco.MjModel, hulls: Sequence[Hull], density:
                 linear[row], quadratic[row] = given
             else:
                 coupled[row] = 1
-                matrices[row] = np.concatenate([np.diag(n).ravel() if len(n) == 6 else n for n in given])
+                matrices[row] = np.concatenate(
+                    [np.diag(n).ravel() if len(n) == 6 else n for n in given]
+                )
             continue
         if drag.panels:
             length = float(np.ptp(np.vstack([mesh.vertices for mesh in meshes]), axis=0).max())
-            panels[row] = drag.coefficient * 2.0 / 3.0, drag.coefficient / 3.0, length, drag.viscosity, density
+            panels[row] = (
+                drag.coefficient * 2.0 / 3.0,
+                drag.coefficient / 3.0,
+                length,
+                drag.viscosity,
+                density,
+            )
             continue
         quadratic[row], length = _quadratic(0.5 * density * drag.coefficient, meshes, centre)
         slow = drag.linear_froude * math.sqrt(gravity * length)
         linear[row] = quadratic[row] * np.repeat([slow, slow / (0.5 * length)], 3)
     starts = np.cumsum([0, *(len(group) for group in members)])
-    return Damping(
+    return DampingArrays(
         np.array(bodies),
         volumes,
         linear,
@@ -179,8 +203,15 @@ def _numbers(
     model: mujoco.MjModel, body: int, kind: str, given: NDArray[np.float64], sizes: tuple[int, ...]
 ) -> NDArray[np.float64]:
     """Damping that a model states: coefficients, or a matrix row by row."""
-    name, entries = body_name(model, body), {3: "heave, roll, pitch", 6: "surge, sway, heave, roll, pitch, yaw"}
-    if len(given) not in sizes or not np.isfinite(given).all() or (len(given) < 36 and not (given >= 0.0).all()):
+    name, entries = (
+        body_name(model, body),
+        {3: "heave, roll, pitch", 6: "surge, sway, heave, roll, pitch, yaw"},
+    )
+    if (
+        len(given) not in sizes
+        or not np.isfinite(given).all()
+        or (len(given) < 36 and not (given >= 0.0).all())
+    ):
         more = ", or all 36 of a matrix" if 36 in sizes else ""
         raise ModelError(
             f"the {kind} damping of body '{name}' is {given.tolist()}; it must be {sizes[0]} numbers of at least 0: "
@@ -220,7 +251,9 @@ def _quadratic(
     return damping, longest
 
 
-def _shown(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+def _shown(
+    meshes: Sequence[TriMesh], centre: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
     """Silhouettes of meshes along each axis, as areas of cells (3, CELLS, CELLS) [m^2]; cells' middles; longest side."""
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     v = np.vstack([mesh.vertices for mesh in meshes]) - centre

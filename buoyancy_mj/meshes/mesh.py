@@ -18,7 +18,7 @@ class TriMesh:
     sum to zero; several pieces, holes through the solid and inner cavities are all fine.
 
     Raises:
-        MeshError: not finite, empty, open, or with no positive volume. `mending.mended` repairs
+        MeshError: not finite, empty, open, or with no positive volume. `meshes.repair` repairs
             what can be repaired.
     """
 
@@ -28,11 +28,11 @@ class TriMesh:
     """Indices of the corners of each triangle (m, 3)."""
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike) -> None:
-        v, f = checked_arrays(vertices, faces)
+        v, f = check_arrays(vertices, faces)
         if len(open_edges(f)):
             raise MeshError(
                 f"a mesh of {len(f)} triangles is open along {len(open_edges(f))} edges; "
-                "a hull must be closed: close it, or let buoyancy_mj.mended try"
+                "a hull must be closed: close it, or let buoyancy_mj.repair try"
             )
         v, f = v.copy(), f.copy()
         v.setflags(write=False)
@@ -42,7 +42,7 @@ class TriMesh:
         if not self.volume > 0.0:
             raise MeshError(
                 f"a mesh of {len(f)} triangles encloses {self.volume:.3g} m^3; a hull must enclose a positive volume: "
-                "turn its faces outward, or let buoyancy_mj.mended try"
+                "turn its faces outward, or let buoyancy_mj.repair try"
             )
 
     def __repr__(self) -> str:
@@ -80,7 +80,9 @@ class TriMesh:
         """Centroid of the enclosed volume (3,) [m]."""
         middle = self.vertices.mean(axis=0)
         a, b, c = self.corners
-        return middle + self._tetrahedra @ ((a - middle) + (b - middle) + (c - middle)) / (4.0 * self.volume)
+        return middle + self._tetrahedra @ ((a - middle) + (b - middle) + (c - middle)) / (
+            4.0 * self.volume
+        )
 
     @cached_property
     def _tetrahedra(self) -> NDArray[np.float64]:
@@ -110,7 +112,9 @@ class TriMesh:
         used, faces = np.unique(self.faces, return_inverse=True)
         return np.ascontiguousarray(self.vertices[used]), faces.reshape(-1, 3)
 
-    def transformed(self, rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> "TriMesh":
+    def transformed(
+        self, rotation: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)
+    ) -> "TriMesh":
         """The mesh turned by a rotation matrix (3, 3), then moved by `translation` (3,) [m]."""
         moved = object.__new__(TriMesh)
         vertices = self.vertices @ np.asarray(rotation, float).T + np.asarray(translation, float)
@@ -120,7 +124,9 @@ class TriMesh:
         return moved
 
 
-def checked_arrays(vertices: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def check_arrays(
+    vertices: ArrayLike, faces: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """`vertices` as finite floats (n, 3) and `faces` as indices (m, 3) into them.
 
     Raises:
@@ -137,10 +143,14 @@ def checked_arrays(vertices: ArrayLike, faces: ArrayLike) -> tuple[NDArray[np.fl
     if not len(f):
         raise MeshError("a mesh without a single triangle encloses nothing; export it again")
     if not np.issubdtype(f.dtype, np.integer):
-        raise MeshError(f"faces are of type {f.dtype}; they must be integer indices into the vertices")
+        raise MeshError(
+            f"faces are of type {f.dtype}; they must be integer indices into the vertices"
+        )
     if not np.isfinite(v).all():
         bad = int(np.flatnonzero(~np.isfinite(v).all(axis=1))[0])
-        raise MeshError(f"vertex {bad} is {v[bad].tolist()}; every coordinate must be a finite number")
+        raise MeshError(
+            f"vertex {bad} is {v[bad].tolist()}; every coordinate must be a finite number"
+        )
     if f.min() < 0 or f.max() >= len(v):
         raise MeshError(f"faces name vertices {f.min()} to {f.max()}; there are 0 to {len(v) - 1}")
     return v, f.astype(np.int64)
@@ -170,13 +180,15 @@ def winding(v: NDArray[np.float64], f: NDArray[np.int64], point: NDArray[np.floa
     return float(np.arctan2(numerator, denominator).sum() / (2.0 * np.pi))
 
 
-def solid_of(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> manifold3d.Manifold | None:
+def to_manifold(
+    vertices: NDArray[np.float64], faces: NDArray[np.int64]
+) -> manifold3d.Manifold | None:
     """A closed mesh without spare vertices, for booleans; None where it is no manifold."""
     solid = manifold3d.Manifold(manifold3d.Mesh64(vertices, faces.astype(np.uint64)))
     return solid if solid.status() == manifold3d.Error.NoError else None
 
 
-def refined(
+def refine(
     vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The same surface with edges of about `edge` [m] at most, in about as few triangles as that takes.
@@ -189,7 +201,9 @@ def refined(
     while len(f):
         # turn each face so that its longest edge runs from corner 0 to corner 1
         a, b, c = v[f.T]
-        lengths = np.stack([np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=1)
+        lengths = np.stack(
+            [np.linalg.norm(q - p, axis=1) for p, q in ((a, b), (b, c), (c, a))], axis=1
+        )
         f = np.take_along_axis(f, (lengths.argmax(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
         longest, shortest = lengths.max(axis=1), lengths.min(axis=1)
         long = longest > edge
@@ -203,18 +217,24 @@ def refined(
         f = f[long & ~slender]
         m = len(v) + np.arange(len(f))
         v = np.vstack([v, 0.5 * (v[f[:, 0]] + v[f[:, 1]])])
-        f = np.vstack([np.column_stack([f[:, 0], m, f[:, 2]]), np.column_stack([m, f[:, 1], f[:, 2]])])
+        f = np.vstack(
+            [np.column_stack([f[:, 0], m, f[:, 2]]), np.column_stack([m, f[:, 1], f[:, 2]])]
+        )
     if len(v) == len(vertices):
         return vertices, faces
     places, inverse = np.unique(v, axis=0, return_inverse=True)
     return places, inverse.ravel()[np.vstack(done)]
 
 
-def _sliced(v: NDArray[np.float64], f: NDArray[np.int64], count: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _sliced(
+    v: NDArray[np.float64], f: NDArray[np.int64], count: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Triangles cut into `count` slices parallel to their shortest edge."""
     # the tip lies opposite the shortest edge
     a, b, c = v[f.T]
-    opposite = np.stack([np.linalg.norm(q - p, axis=1) for p, q in ((b, c), (c, a), (a, b))], axis=1)
+    opposite = np.stack(
+        [np.linalg.norm(q - p, axis=1) for p, q in ((b, c), (c, a), (a, b))], axis=1
+    )
     f = np.take_along_axis(f, (opposite.argmin(axis=1)[:, None] + np.arange(3)) % 3, axis=1)
     tip, left, right = v[f.T]
     part = np.arange(1, count)[:, None, None] / count

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
 from buoyancy_mj.kernels.rays import misenclosed
-from buoyancy_mj.meshes.mesh import TriMesh, checked_arrays, open_edges, solid_of, winding
+from buoyancy_mj.meshes.mesh import TriMesh, check_arrays, open_edges, to_manifold, winding
 
 IN_DOUBT = 0.01
 """Fraction of a mesh's volume that may be in doubt before it is refused."""
@@ -76,10 +76,16 @@ class Diagnosis:
     """The hull; None if it was refused."""
 
     @property
-    def mended(self) -> bool:
+    def repaired(self) -> bool:
         """Whether it came otherwise than it is now."""
         return bool(
-            self.degenerate or self.duplicates or self.backwards or self.holes or self.inverted or self.shells or self.joined
+            self.degenerate
+            or self.duplicates
+            or self.backwards
+            or self.holes
+            or self.inverted
+            or self.shells
+            or self.joined
         )
 
     @property
@@ -88,7 +94,7 @@ class Diagnosis:
         return sum(hole.doubt for hole in self.holes)
 
 
-def mended(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[TriMesh, list[str]]:
+def repair(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[TriMesh, list[str]]:
     """A hull from vertices (n, 3) [m] and faces (m, 3), and a sentence for each thing that was mended.
 
     Vertices at one place become one, faces without area go, faces are wound alike and outward, small
@@ -99,14 +105,14 @@ def mended(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[T
         MeshError: empty, flat, absurdly scaled, open by more than 1 % of the volume, or crossing
             itself by as much; the message names `name` and the mend.
     """
-    found = diagnosed(vertices, faces, name)
+    found = diagnose(vertices, faces, name)
     if found.mesh is None:
         raise MeshError(found.refusal)
     return found.mesh, found.notices
 
 
-def diagnosed(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Diagnosis:
-    """What is wrong with a mesh, mended as far as that is safe; see `mended`."""
+def diagnose(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Diagnosis:
+    """What is wrong with a mesh, mended as far as that is safe; see `repair`."""
     found = Diagnosis(name)
     try:
         found.mesh = _treated(found, vertices, faces)
@@ -118,7 +124,7 @@ def diagnosed(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Diag
 
 def _treated(found: Diagnosis, vertices: ArrayLike, faces: ArrayLike) -> TriMesh:
     """The hull; each step leaves its finding."""
-    v, f = checked_arrays(vertices, faces)
+    v, f = check_arrays(vertices, faces)
     used = v[np.unique(f)]
     found.triangles, found.volume_as_is = len(f), _volume(v, f)
     found.extents = tuple(np.ptp(used, axis=0).tolist())
@@ -132,7 +138,9 @@ def _treated(found: Diagnosis, vertices: ArrayLike, faces: ArrayLike) -> TriMesh
         wound = np.asarray(mesh.faces, np.int64)
         if len(open_edges(wound)) < len(open_edges(f)):
             found.backwards = int((wound != f).any(axis=1).sum())
-            found.notices.append(f"{found.backwards} triangles were wound backwards and were turned")
+            found.notices.append(
+                f"{found.backwards} triangles were wound backwards and were turned"
+            )
             f = wound
     if len(open_edges(f)):
         v, f, found.holes = _closed(v, f)
@@ -140,7 +148,9 @@ def _treated(found: Diagnosis, vertices: ArrayLike, faces: ArrayLike) -> TriMesh
     f = np.vstack(pieces)
     volume = _volume(v, f)
     if volume <= 1e-9 * float(np.prod(np.maximum(np.ptp(v, axis=0), 1e-300))):
-        raise MeshError("it is flat and encloses no volume; give it thickness, or leave the geom out")
+        raise MeshError(
+            "it is flat and encloses no volume; give it thickness, or leave the geom out"
+        )
     if found.holes:
         edges = sum(hole.edges for hole in found.holes)
         told = (
@@ -163,11 +173,13 @@ def _treated(found: Diagnosis, vertices: ArrayLike, faces: ArrayLike) -> TriMesh
             f"of {volume:.3g} m^3; join its parts by a boolean union, or take its convex hull (--hull convex)"
         )
     if crossing > WORTH_TELLING * volume:
-        found.notices.append(f"it crosses itself; about {crossing / volume:.2%} of its volume is in doubt")
+        found.notices.append(
+            f"it crosses itself; about {crossing / volume:.2%} of its volume is in doubt"
+        )
     return TriMesh(v, f)
 
 
-def convex_of(vertices: NDArray[np.float64], name: str = "mesh") -> TriMesh:
+def wrap_convex(vertices: NDArray[np.float64], name: str = "mesh") -> TriMesh:
     """The convex hull of vertices (n, 3) [m]: a stated approximation, for meshes that bound no volume.
 
     Raises:
@@ -176,7 +188,9 @@ def convex_of(vertices: NDArray[np.float64], name: str = "mesh") -> TriMesh:
     try:
         solid = trimesh.convex.convex_hull(vertices)
     except scipy.spatial.QhullError as error:
-        raise MeshError(f"{name}: it is flat and has no convex hull; give it thickness, or leave the geom out") from error
+        raise MeshError(
+            f"{name}: it is flat and has no convex hull; give it thickness, or leave the geom out"
+        ) from error
     return TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))
 
 
@@ -184,7 +198,9 @@ def _check_scale(found: Diagnosis) -> None:
     """Refuse what no unit of length explains, and tell what looks like millimetres."""
     longest = max(found.extents)
     if SUSPICIOUS < longest <= LARGEST:
-        found.notices.append(f"it is {longest:.3g} m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'")
+        found.notices.append(
+            f"it is {longest:.3g} m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'"
+        )
     elif not SMALLEST <= longest <= LARGEST:
         raise MeshError(
             f"its longest side is {longest:.3g} m, possible are {SMALLEST:g} to {LARGEST:g} m; "
@@ -192,7 +208,9 @@ def _check_scale(found: Diagnosis) -> None:
         )
 
 
-def _merged(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64], int, int]:
+def _merged(
+    v: NDArray[np.float64], f: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64], int, int]:
     """One vertex at each place; no triangle that has lost a corner, none that stands there twice, and how many did."""
     places = np.round((v - v.min(axis=0)) / (1e-7 * np.ptp(v, axis=0).max()))
     _, first, inverse = np.unique(places, axis=0, return_index=True, return_inverse=True)
@@ -207,7 +225,9 @@ def _merged(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.fl
     return v[first], proper[np.sort(keep)], len(f) - len(proper), len(proper) - len(keep)
 
 
-def _closed(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64], tuple[Hole, ...]]:
+def _closed(
+    v: NDArray[np.float64], f: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64], tuple[Hole, ...]]:
     """Lids over all holes, fans about their middles."""
     # the boundary as loops, each step a directed edge that is used once
     onward: dict[int, list[int]] = {}
@@ -222,7 +242,9 @@ def _closed(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.fl
         while True:
             nexts = onward.get(loop[-1])
             if not nexts:
-                raise MeshError("it is open and its boundary forms no loops; export it as one closed solid")
+                raise MeshError(
+                    "it is open and its boundary forms no loops; export it as one closed solid"
+                )
             step = nexts.pop()
             if not nexts:
                 del onward[loop[-1]]
@@ -242,7 +264,9 @@ def _closed(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.fl
     return np.vstack(middles), np.vstack(lids), tuple(holes)
 
 
-def _outward(found: Diagnosis, v: NDArray[np.float64], f: NDArray[np.int64]) -> list[NDArray[np.int64]]:
+def _outward(
+    found: Diagnosis, v: NDArray[np.float64], f: NDArray[np.int64]
+) -> list[NDArray[np.int64]]:
     """Faces of every piece turned outward, without the walls of sealed cavities."""
     if _volume(v, f) < 0.0:
         f, found.inverted = f[:, ::-1].copy(), "it"
@@ -269,7 +293,9 @@ def _outward(found: Diagnosis, v: NDArray[np.float64], f: NDArray[np.int64]) -> 
     if found.inverted:
         found.notices.append(f"{found.inverted} was inside out; its faces were turned outward")
     if found.sealed:
-        found.notices.append(f"water cannot reach the {found.sealed:.3g} m^3 sealed inside it, which displace like solid")
+        found.notices.append(
+            f"water cannot reach the {found.sealed:.3g} m^3 sealed inside it, which displace like solid"
+        )
     return solid
 
 
@@ -277,7 +303,7 @@ def _united(
     found: Diagnosis, v: NDArray[np.float64], pieces: list[NDArray[np.int64]]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Pieces that overlap as one, unless one of them is no manifold."""
-    solids = [solid_of(*_compact(v, piece)) for piece in pieces]
+    solids = [to_manifold(*_compact(v, piece)) for piece in pieces]
     manifolds = [solid for solid in solids if solid is not None]
     before = _volume(v, np.vstack(pieces))
     if len(manifolds) == len(pieces):
@@ -295,7 +321,9 @@ def _united(
     return v, np.vstack(pieces)
 
 
-def _compact(v: NDArray[np.float64], f: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _compact(
+    v: NDArray[np.float64], f: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Vertices that faces use, and the faces in their indices."""
     used, faces = np.unique(f, return_inverse=True)
     return np.ascontiguousarray(v[used]), faces.reshape(-1, 3)

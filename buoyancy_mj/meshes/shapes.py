@@ -46,7 +46,9 @@ def capsule(radius: float, half_length: float) -> TriMesh:
     # in radii; the poles lie on the axis exactly
     cap = np.column_stack([np.cos(angle), half_length / radius + np.sin(angle)])
     cap[-1, 0] = 0.0
-    solid = _revolved(np.vstack([cap[::-1] * [1.0, -1.0], cap]), np.pi * (2.0 * half_length / radius + 4.0 / 3.0))
+    solid = _revolved(
+        np.vstack([cap[::-1] * [1.0, -1.0], cap]), np.pi * (2.0 * half_length / radius + 4.0 / 3.0)
+    )
     return TriMesh(solid.vertices * radius, solid.faces)
 
 
@@ -56,14 +58,20 @@ def _revolved(profile: ArrayLike, volume: float) -> TriMesh:
     turn = 2.0 * np.pi * np.arange(SECTIONS) / SECTIONS
     rings = np.stack([np.outer(r[1:-1], np.cos(turn)), np.outer(r[1:-1], np.sin(turn))], axis=-1)
     heights = np.repeat(z[1:-1], SECTIONS)
-    vertices = np.vstack([[0.0, 0.0, z[0]], np.column_stack([rings.reshape(-1, 2), heights]), [0.0, 0.0, z[-1]]])
+    vertices = np.vstack(
+        [[0.0, 0.0, z[0]], np.column_stack([rings.reshape(-1, 2), heights]), [0.0, 0.0, z[-1]]]
+    )
     # around each pole a fan, between two rings a band
     first = 1 + SECTIONS * np.arange(len(r) - 2)[:, None] + np.arange(SECTIONS)
     after = np.roll(first, -1, axis=1)
     bottom = np.column_stack([np.zeros(SECTIONS, int), after[0], first[0]])
     top = np.column_stack([np.full(SECTIONS, len(vertices) - 1), first[-1], after[-1]])
-    low, low_after, high, high_after = (ring.ravel() for ring in (first[:-1], after[:-1], first[1:], after[1:]))
-    bands = np.vstack([np.column_stack([low, low_after, high_after]), np.column_stack([low, high_after, high])])
+    low, low_after, high, high_after = (
+        ring.ravel() for ring in (first[:-1], after[:-1], first[1:], after[1:])
+    )
+    bands = np.vstack(
+        [np.column_stack([low, low_after, high_after]), np.column_stack([low, high_after, high])]
+    )
     solid = TriMesh(vertices, np.vstack([bottom, bands, top]))
     across = np.sqrt(volume / solid.volume)
     return TriMesh(solid.vertices * [across, across, 1.0], solid.faces)

@@ -28,7 +28,7 @@ class Tree(NamedTuple):
     """Moments of its vector area (n, 31) [m^2, m^3, m^4]."""
 
 
-def grown(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
+def grow_tree(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
     """A tree over the triangles of a mesh; of one leaf alone where the plain way is as fast."""
     n = len(faces)
     leaf = LEAF if n >= FEW else n

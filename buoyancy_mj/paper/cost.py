@@ -32,11 +32,16 @@ def timing(quick: bool) -> Result:
             rows.append((vehicle, name, *(1e3 * np.percentile(times, [50, 99, 100]))))
             late.setdefault(vehicle, {})[name] = float(np.percentile(times, 99))
     told = {
-        vehicle: listed({name: f"{1e3 * value:.2g} ms" for name, value in found.items()}) for vehicle, found in late.items()
+        vehicle: listed({name: f"{1e3 * value:.2g} ms" for name, value in found.items()})
+        for vehicle, found in late.items()
     }
     every = [value for found in late.values() for value in found.values()]
     return Result(
-        {"timing": table_of(["vehicle", "method", "median [ms]", "99 % below [ms]", "longest [ms]"], rows)},
+        {
+            "timing": table_of(
+                ["vehicle", "method", "median [ms]", "99 % below [ms]", "longest [ms]"], rows
+            )
+        },
         (
             Claim(
                 "updates at 60 Hz",
@@ -52,21 +57,44 @@ def work(quick: bool) -> Result:
     """Vertices looked at, points given to Quickhull, sections cut: in the paper's runs of 5 s at 0.01 s."""
     rows = []
     saved, fewer, more, lost = {}, {}, {}, {}
-    for name in ("hourglass_drop_still", "hourglass_drop_waves", *(() if quick else ("auv_drop_still",))):
-        scene = dataclasses.replace(read_scene(catalog.scenes()[name]), duration=1.0 if quick else 5.0)
+    for name in (
+        "hourglass_drop_still",
+        "hourglass_drop_waves",
+        *(() if quick else ("auv_drop_still",)),
+    ):
+        scene = dataclasses.replace(
+            read_scene(catalog.scenes()[name]), duration=1.0 if quick else 5.0
+        )
         counts, volumes = {}, {}
         for variant, method in VARIANTS.items():
             volumes[variant], counts[variant] = _followed(scene, method)
-            iterations = sum(counts[variant].get(key, 0) for key in ("vertex_checks", "hull_points", "sections"))
-            rows.append((name, variant, *(float(counts[variant].get(key, np.nan)) for key in _COUNTS), float(iterations)))
-        plain, tenth = counts["convex hull, all vertices"], counts["convex hull, sorted every 10 steps"]
+            iterations = sum(
+                counts[variant].get(key, 0) for key in ("vertex_checks", "hull_points", "sections")
+            )
+            rows.append(
+                (
+                    name,
+                    variant,
+                    *(float(counts[variant].get(key, np.nan)) for key in _COUNTS),
+                    float(iterations),
+                )
+            )
+        plain, tenth = (
+            counts["convex hull, all vertices"],
+            counts["convex hull, sorted every 10 steps"],
+        )
         saved[name] = 1.0 - tenth["vertex_checks"] / plain["vertex_checks"]
         points = tenth["vertex_checks"] + tenth["hull_points"]
         fewer[name] = 1.0 - counts["sections"]["sections"] / points
         more[name] = counts["sections"]["crossings"] / points
         truth = volumes["convex hull, all vertices"]
-        lost[name] = float(np.abs(volumes["convex hull, sorted every 10 steps"] - truth).max() / truth.max())
-    told = [listed({name: percent(value) for name, value in values.items()}) for values in (fewer, saved, lost)]
+        lost[name] = float(
+            np.abs(volumes["convex hull, sorted every 10 steps"] - truth).max() / truth.max()
+        )
+    told = [
+        listed({name: percent(value) for name, value in values.items()})
+        for values in (fewer, saved, lost)
+    ]
     met = listed({name: f"{value:.2g} x" for name, value in more.items()})
     return Result(
         {"work": table_of(["scene", "method", *_COUNTS.values(), "iterations"], rows)},
@@ -84,7 +112,10 @@ def work(quick: bool) -> Result:
                 "fewer",
                 f"{told[1]} of them are saved; but between sorts a body turns, and its hull's volume is off by up to "
                 f"{told[2]} of the largest",
-                verdict(min(saved.values()) > 0.0 and max(lost.values()) < 0.01, min(saved.values()) > 0.0),
+                verdict(
+                    min(saved.values()) > 0.0 and max(lost.values()) < 0.01,
+                    min(saved.values()) > 0.0,
+                ),
             ),
         ),
     )
@@ -126,7 +157,9 @@ def _followed(scene: Scene, method: Method) -> tuple[NDArray[np.float64], Mappin
     return volumes, follower.packed.counts
 
 
-def _update_times(model: mujoco.MjModel, method: Method, height: float, repeats: int) -> NDArray[np.float64]:
+def _update_times(
+    model: mujoco.MjModel, method: Method, height: float, repeats: int
+) -> NDArray[np.float64]:
     """Wall times (n,) [s] of evaluations of a vehicle at the surface, one timestep after the other."""
     data = mujoco.MjData(model)
     data.qpos[2] = height

@@ -14,7 +14,7 @@ from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.runs import FREQUENCY, SURFACES, run, scene_of, steps, swing
 from buoyancy_mj.paper.statics import DENSITY, METHODS
 from buoyancy_mj.paper.study import Claim, Result, listed, table_of, verdict
-from buoyancy_mj.scenes.assembly import assembled
+from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.scene import Scene, Start
 from buoyancy_mj.submersion.convex_hull import ConvexHull
 from buoyancy_mj.submersion.methods import Method
@@ -32,12 +32,17 @@ def force(quick: bool) -> Result:
     tilted = scene_of("hourglass_drop_still")
     upright = dataclasses.replace(tilted, start=Start(position=(0.0, 0.0, 0.35)))
     weight = DENSITY * 9.81
-    slow = {"dz [m]": dz, "rho g V, closed form [N]": weight * solids.hourglass_volume(dz, solids.SECTIONS)}
+    slow = {
+        "dz [m]": dz,
+        "rho g V, closed form [N]": weight * solids.hourglass_volume(dz, solids.SECTIONS),
+    }
     drop: dict[str, NDArray[np.float64]] = {}
     told, late = {}, {}
     for name in ("exact", "convex hull", "sections"):
         method = METHODS[name]
-        slow[f"{name} [N]"] = weight * np.array([solids.wet_volume([mesh], p, np.eye(3), method) for p in places])
+        slow[f"{name} [N]"] = weight * np.array(
+            [solids.wet_volume([mesh], p, np.eye(3), method) for p in places]
+        )
         moments = list(run(upright, method))
         drop.setdefault("time [s]", np.array([m.time for m in moments]))
         drop |= {
@@ -45,7 +50,9 @@ def force(quick: bool) -> Result:
             f"{name}, force [N]": np.array([m.force for m in moments]),
         }
         off = np.array([found - present for found, present in _against_present(tilted, method)])
-        late[name] = _longest(np.abs(off) > 0.01 * np.abs(slow[f"{name} [N]"]).max()) * tilted.timestep
+        late[name] = (
+            _longest(np.abs(off) > 0.01 * np.abs(slow[f"{name} [N]"]).max()) * tilted.timestep
+        )
         told[name] = f"up to {np.abs(off).max():.2g} N off for {1e3 * late[name]:.0f} ms"
     return Result(
         {"force": slow, "force_in_a_drop": drop},
@@ -65,9 +72,15 @@ def _against_present(scene: Scene, method: Method) -> Iterator[tuple[float, floa
     """Buoyancy [N] at each step of a scene, and what the method finds at the same pose without its past."""
     weight = scene.water.density * 9.81
     for buoyancy, data, wet in steps(scene, method):
-        present = dataclasses.replace(method, resort_every=0) if isinstance(method, ConvexHull) else method
+        present = (
+            dataclasses.replace(method, resort_every=0)
+            if isinstance(method, ConvexHull)
+            else method
+        )
         found = sum(
-            submerge(h.mesh, data.geom_xpos[h.geom], data.geom_xmat[h.geom].reshape(3, 3), method=present).volume
+            submerge(
+                h.mesh, data.geom_xpos[h.geom], data.geom_xmat[h.geom].reshape(3, 3), method=present
+            ).volume
             for h in buoyancy.hulls
         )
         yield weight * float(wet[:, clip.VOLUME].sum()), weight * found
@@ -82,23 +95,41 @@ def _longest(flags: NDArray[np.bool_]) -> int:
 def distributed(quick: bool) -> Result:
     """Buoyancy of each mesh of the AUV at rest, and whether the meshes' forces act like their resultant."""
     scene = scene_of("auv_drop_still")
-    scene = dataclasses.replace(scene, start=Start(position=(0.0, 0.0, -0.12)), duration=1.0 if quick else 20.0)
-    model, data, _ = assembled(scene)
+    scene = dataclasses.replace(
+        scene, start=Start(position=(0.0, 0.0, -0.12)), duration=1.0 if quick else 20.0
+    )
+    model, data, _ = assemble(scene)
     buoyancy = Buoyancy(model, scene.water)
     with buoyancy.installed():
         mujoco.mj_step(model, data, round(scene.duration / scene.timestep))
     mujoco.mj_forward(model, data)
     loads = buoyancy.evaluate(data)
-    rows = [*zip(loads.names, loads.hull.volume, loads.hull.centroid, loads.hull.force[:, 2], strict=True)]
-    rows.append(("all", float(loads.total.volume), loads.total.centroid, float(loads.hull.force[:, 2].sum())))
+    rows = [
+        *zip(
+            loads.names, loads.hull.volume, loads.hull.centroid, loads.hull.force[:, 2], strict=True
+        )
+    ]
+    rows.append(
+        (
+            "all",
+            float(loads.total.volume),
+            loads.total.centroid,
+            float(loads.hull.force[:, 2].sum()),
+        )
+    )
     # the same on waves, at each step of a run: what the joints feel
     apart = strongest = 0.0
     waves = dataclasses.replace(scene_of("auv_waves"), duration=0.5 if quick else 5.0)
     for name in ("exact", "convex hull", "sections"):
         for each, one in (_joint_forces(*step) for step in steps(waves, METHODS[name])):
-            apart, strongest = max(apart, float(np.abs(each - one).max())), max(strongest, float(np.abs(each).max()))
+            apart, strongest = (
+                max(apart, float(np.abs(each - one).max())),
+                max(strongest, float(np.abs(each).max())),
+            )
     names = ["mesh", "volume [m^3]", "x [m]", "y [m]", "z [m]", "force [N]"]
-    table = table_of(names, [(name, float(v), *map(float, centroid), float(f)) for name, v, centroid, f in rows])
+    table = table_of(
+        names, [(name, float(v), *map(float, centroid), float(f)) for name, v, centroid, f in rows]
+    )
     return Result(
         {"distributed": table},
         (
@@ -129,7 +160,12 @@ def cog(quick: bool) -> Result:
                 if method == "exact":
                     swings[vehicle, surface] = swing(heights, scene.timestep)
         tables[f"cog_{vehicle.lower()}"] = columns
-    told = ", ".join(f"{swings[v, s]:.2f} m ({v}, {s})" for v in ("hourglass", "AUV") for s in SURFACES if s != "still")
+    told = ", ".join(
+        f"{swings[v, s]:.2f} m ({v}, {s})"
+        for v in ("hourglass", "AUV")
+        for s in SURFACES
+        if s != "still"
+    )
     return Result(
         tables,
         (
@@ -164,9 +200,23 @@ def oscillation(quick: bool) -> Result:
                     half_range = swing(np.array([m.height for m in moments]), scene.timestep)
                     last = moments[-round(1.0 / FREQUENCY / scene.timestep) :]
                     rows.append(
-                        (surface, "estimated" if drag else "none", fraction, rate, half_range, max(m.force for m in last))
+                        (
+                            surface,
+                            "estimated" if drag else "none",
+                            fraction,
+                            rate,
+                            half_range,
+                            max(m.force for m in last),
+                        )
                     )
-    names = ["surface", "drag of the water", "mass over displacement", "damping [1/s]", "swing [m]", "largest force [N]"]
+    names = [
+        "surface",
+        "drag of the water",
+        "mass over displacement",
+        "damping [1/s]",
+        "swing [m]",
+        "largest force [N]",
+    ]
     # in the water during the last wave, not flung out of it
     within = [row for row in rows if row[4] < SWING and row[5] > 0.0]
     always = listed({f"mass {part:g}": f"{_least(rows, part):g} /s" for part in fractions})
@@ -209,7 +259,9 @@ def rest(quick: bool) -> Result:
             columns[f"{method} [N]"] = forces[-200:]
             columns["time before the end [s]"] = scene.timestep * np.arange(-199.0, 1.0)
             spread[f"{vehicle}, {method}, {scene.duration:g} s"] = float(forces[-200:].std())
-            early[f"{vehicle}, {method}"] = float(forces[round(3.0 / scene.timestep) : round(5.0 / scene.timestep)].std())
+            early[f"{vehicle}, {method}"] = float(
+                forces[round(3.0 / scene.timestep) : round(5.0 / scene.timestep)].std()
+            )
         tables[f"rest_{vehicle.lower()}"] = columns
     return Result(
         tables,
@@ -221,7 +273,10 @@ def rest(quick: bool) -> Result:
                 + listed({name: f"{value:.2g} N" for name, value in spread.items()})
                 + "; over 3 to 5 s, still bobbing: "
                 + listed({name: f"{value:.2g} N" for name, value in early.items()}),
-                verdict(max(spread.values()) < 0.5 and max(early.values()) < 0.5, max(spread.values()) < 0.5),
+                verdict(
+                    max(spread.values()) < 0.5 and max(early.values()) < 0.5,
+                    max(spread.values()) < 0.5,
+                ),
             ),
         ),
     )

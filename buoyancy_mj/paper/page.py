@@ -24,9 +24,7 @@ def page(header: Sequence[str], rows: Sequence[tuple[str, ...]], *, quick: bool)
     table = [f"| {' | '.join(header)} |", "| --- | --- | --- | --- | --- |"]
     for *cells, command in rows:
         table.append(f"| {' | '.join(cell.replace('|', '/') for cell in cells)} | `{command}` |")
-    machine = (
-        f"{os.cpu_count()} cores, Python {platform.python_version()}, MuJoCo {version('mujoco')}, SciPy {version('scipy')}"
-    )
+    machine = f"{os.cpu_count()} cores, Python {platform.python_version()}, MuJoCo {version('mujoco')}, SciPy {version('scipy')}"
     return _PAGE.format(
         table="\n".join(table),
         pictures="\n\n".join(pictures),

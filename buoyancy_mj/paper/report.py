@@ -15,7 +15,11 @@ DPI = 110
 
 
 def reproduce(
-    folder: Path, only: Sequence[str] = (), *, quick: bool = False, begin: Callable[[Study], None] = lambda study: None
+    folder: Path,
+    only: Sequence[str] = (),
+    *,
+    quick: bool = False,
+    begin: Callable[[Study], None] = lambda study: None,
 ) -> list[tuple[str, ...]]:
     """Run the studies; what each finds is written as soon as it is found.
 
@@ -57,12 +61,17 @@ def _write(folder: Path, study: Study, result: Result) -> None:
     for name, table in result.tables.items():
         _write_csv(folder / f"{name}.csv", list(table), _rows(table))
     if study.draw is not None:
-        study.draw(result).savefig(folder / f"{study.name}.png", dpi=DPI, metadata={"Software": None})
+        study.draw(result).savefig(
+            folder / f"{study.name}.png", dpi=DPI, metadata={"Software": None}
+        )
 
 
 def _rows(table: Table) -> Iterable[tuple[str, ...]]:
     """Rows of a table as text, numbers with seven digits."""
-    return zip(*([v if isinstance(v, str) else f"{v:.7g}" for v in column] for column in table.values()), strict=True)
+    return zip(
+        *([v if isinstance(v, str) else f"{v:.7g}" for v in column] for column in table.values()),
+        strict=True,
+    )
 
 
 def _write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:

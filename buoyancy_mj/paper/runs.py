@@ -11,7 +11,7 @@ from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.paper.statics import DENSITY
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.assembly import assembled
+from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.scene import Scene, read_scene
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import LevelOscillation, RegularWave
@@ -22,8 +22,12 @@ AMPLITUDE, FREQUENCY = 0.3, 0.5
 SURFACES = {
     "still": Water(density=DENSITY),
     # both begin at the mean level, going up
-    "moving level": Water(density=DENSITY, waves=LevelOscillation(AMPLITUDE, FREQUENCY, phase=np.pi / 2.0)),
-    "travelling wave": Water(density=DENSITY, waves=RegularWave(AMPLITUDE, frequency=FREQUENCY, phase=np.pi / 2.0)),
+    "moving level": Water(
+        density=DENSITY, waves=LevelOscillation(AMPLITUDE, FREQUENCY, phase=np.pi / 2.0)
+    ),
+    "travelling wave": Water(
+        density=DENSITY, waves=RegularWave(AMPLITUDE, frequency=FREQUENCY, phase=np.pi / 2.0)
+    ),
 }
 
 
@@ -41,7 +45,9 @@ class Moment:
     """Buoyancy [N]."""
 
 
-def run(scene: Scene, method: Method, mass: float | None = None, rate: float = 0.0) -> Iterator[Moment]:
+def run(
+    scene: Scene, method: Method, mass: float | None = None, rate: float = 0.0
+) -> Iterator[Moment]:
     """Steps of a scene by a method.
 
     Args:
@@ -55,16 +61,21 @@ def run(scene: Scene, method: Method, mass: float | None = None, rate: float = 0
         now = float(data.time) - scene.timestep
         centre = buoyancy.centre_of_mass(data)
         level = float(scene.water.elevation(centre[0], centre[1], now))
-        heights = [h.mesh.vertices @ data.geom_xmat[h.geom][6:] + data.geom_xpos[h.geom][2] for h in buoyancy.hulls]
+        heights = [
+            h.mesh.vertices @ data.geom_xmat[h.geom][6:] + data.geom_xpos[h.geom][2]
+            for h in buoyancy.hulls
+        ]
         force = scene.water.density * buoyancy.gravity * wet[:, clip.VOLUME].sum()
-        yield Moment(now, float(centre[2]), level - min(float(z.min()) for z in heights), float(force))
+        yield Moment(
+            now, float(centre[2]), level - min(float(z.min()) for z in heights), float(force)
+        )
 
 
 def steps(
     scene: Scene, method: Method, mass: float | None = None, rate: float = 0.0
 ) -> Iterator[tuple[Buoyancy, mujoco.MjData, NDArray[np.float64]]]:
     """Each step of a scene: the water, the data with the poses of its beginning, and what was wet then (h, 6)."""
-    model, data, _ = assembled(scene)
+    model, data, _ = assemble(scene)
     if mass is not None:
         factor = mass / model.body_mass.sum()
         model.body_mass *= factor

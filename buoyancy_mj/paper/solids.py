@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.submersion.methods import Method
@@ -38,13 +38,20 @@ def hourglass_volume(height: NDArray[np.float64], sections: float = np.inf) -> N
     # int r^2 dt along a cone is r^3 / 3 times dt/dr
     slope = HALF_HEIGHT / (3.0 * (BASE_RADIUS - NECK_RADIUS))
     r = _hourglass_radius(t)
-    below = np.where(t <= HALF_HEIGHT, BASE_RADIUS**3 - r**3, BASE_RADIUS**3 - 2.0 * NECK_RADIUS**3 + r**3)
+    below = np.where(
+        t <= HALF_HEIGHT, BASE_RADIUS**3 - r**3, BASE_RADIUS**3 - 2.0 * NECK_RADIUS**3 + r**3
+    )
     return _polygon(sections) * slope * below
 
 
 def _hourglass_radius(height: NDArray[np.float64]) -> NDArray[np.float64]:
     """Radius [m] at a height above the base [m]."""
-    return NECK_RADIUS + (BASE_RADIUS - NECK_RADIUS) * np.abs(np.asarray(height, float) - HALF_HEIGHT) / HALF_HEIGHT
+    return (
+        NECK_RADIUS
+        + (BASE_RADIUS - NECK_RADIUS)
+        * np.abs(np.asarray(height, float) - HALF_HEIGHT)
+        / HALF_HEIGHT
+    )
 
 
 def _polygon(sections: float) -> float:
@@ -61,7 +68,7 @@ def model_of(name: str) -> mujoco.MjModel:
 @functools.cache
 def auv() -> tuple[TriMesh, ...]:
     """The meshes of the SAUVC vehicle that displace water, in the frame of its body."""
-    return tuple(hull.mesh_in_body for hull in displacing_hulls(model_of("sauvc_auv"), None))
+    return tuple(hull.mesh_in_body for hull in find_hulls(model_of("sauvc_auv"), None))
 
 
 @functools.cache
@@ -78,13 +85,21 @@ def family(name: str, level: int) -> tuple[TriMesh, ...]:
     if name == "hourglass":
         return (hourglass(3 * finer, 12 * finer),)
     if name == "torus":
-        return (_tri_mesh(trimesh.creation.torus(0.3, 0.1, major_sections=16 * finer, minor_sections=8 * finer)),)
+        return (
+            _tri_mesh(
+                trimesh.creation.torus(
+                    0.3, 0.1, major_sections=16 * finer, minor_sections=8 * finer
+                )
+            ),
+        )
     if name == "catamaran":
         return (_subdivided(_catamaran(), level),)
     parts = tuple(_subdivided(mesh, level) for mesh in auv())
     if name == "AUV":
         return parts
-    return (TriMesh(*trimesh.util.append_faces([m.vertices for m in parts], [m.faces for m in parts])),)
+    return (
+        TriMesh(*trimesh.util.append_faces([m.vertices for m in parts], [m.faces for m in parts])),
+    )
 
 
 FAMILIES = {
@@ -99,13 +114,18 @@ FAMILIES = {
 
 
 def wet_volume(
-    meshes: Sequence[TriMesh], position: NDArray[np.float64], rotation: NDArray[np.float64], method: str | Method = "exact"
+    meshes: Sequence[TriMesh],
+    position: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    method: str | Method = "exact",
 ) -> float:
     """Volume [m^3] of meshes that move together under still water, by a method."""
     return sum(submerge(mesh, position, rotation, method=method).volume for mesh in meshes)
 
 
-def at_draft(meshes: Sequence[TriMesh], fraction: float, rotation: NDArray[np.float64]) -> NDArray[np.float64]:
+def at_draft(
+    meshes: Sequence[TriMesh], fraction: float, rotation: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """Position (3,) [m] at which meshes, turned, reach under the surface by a fraction of their height."""
     z = np.concatenate([mesh.vertices @ rotation[2] for mesh in meshes])
     return np.array([0.0, 0.0, -(z.min() + fraction * np.ptp(z))])

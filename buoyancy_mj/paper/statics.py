@@ -72,13 +72,21 @@ def areas(quick: bool) -> Result:
     mesh = solids.hourglass()
     s, rows, _ = sections(mesh.vertices, mesh.faces, step, np.inf)
     truth = solids.hourglass_area(s + solids.HALF_HEIGHT, solids.SECTIONS)
-    z = np.arange(min(m.bounds[0, 2] for m in solids.auv()), max(m.bounds[1, 2] for m in solids.auv()) + step, step)
+    z = np.arange(
+        min(m.bounds[0, 2] for m in solids.auv()),
+        max(m.bounds[1, 2] for m in solids.auv()) + step,
+        step,
+    )
     auv = {"z [m]": z}
     for name, part in _parts().items():
         auv[f"{name} [m^2]"] = np.sum([_areas_at(m, z, step) for m in part], axis=0)
     return Result(
         {
-            "areas_hourglass": {"z [m]": s, "sections [m^2]": rows[:, 0], "closed form [m^2]": truth},
+            "areas_hourglass": {
+                "z [m]": s,
+                "sections [m^2]": rows[:, 0],
+                "closed form [m^2]": truth,
+            },
             "areas_auv": auv,
         },
         (),
@@ -93,14 +101,25 @@ def tilt(quick: bool) -> Result:
     columns: dict[str, NDArray[np.float64]] = {"tilt [deg]": angles}
     claims = []
     for body, meshes in bodies.items():
-        mass = float(solids.model_of("hourglass" if body == "hourglass" else "sauvc_auv").body_mass.sum())
+        mass = float(
+            solids.model_of("hourglass" if body == "hourglass" else "sauvc_auv").body_mass.sum()
+        )
         place = np.array([0.0, 0.0, _floating(meshes, mass / DENSITY)])
         turns = Rotation.from_euler("y", angles[:, None], degrees=True).as_matrix()
-        wet = {name: np.array([solids.wet_volume(meshes, place, turn, m) for turn in turns]) for name, m in methods.items()}
+        wet = {
+            name: np.array([solids.wet_volume(meshes, place, turn, m) for turn in turns])
+            for name, m in methods.items()
+        }
         errors = {name: found / wet["exact"] - 1.0 for name, found in wet.items()}
-        columns |= {f"{body}, {name}, error [%]": 100.0 * error for name, error in errors.items() if name != "exact"}
+        columns |= {
+            f"{body}, {name}, error [%]": 100.0 * error
+            for name, error in errors.items()
+            if name != "exact"
+        }
         low = angles <= 45.0
-        free, fixed = (np.abs(errors[name][low]).max() for name in ("sections", "sections, axis of the body"))
+        free, fixed = (
+            np.abs(errors[name][low]).max() for name in ("sections", "sections, axis of the body")
+        )
         beyond = np.abs(errors["sections"]).max()
         far = np.abs(errors["sections, axis of the body"]).max()
         claims.append(
@@ -125,10 +144,19 @@ def density(quick: bool) -> Result:
             meshes = solids.family(body, level)
             place = solids.at_draft(meshes, 0.6, UPRIGHT)
             truth = solids.wet_volume(meshes, place, UPRIGHT)
-            errors = {name: solids.wet_volume(meshes, place, UPRIGHT, METHODS[name]) / truth - 1.0 for name in approximate}
-            whole = solids.wet_volume(meshes, place - [0.0, 0.0, 10.0], UPRIGHT, HULL) / sum(m.volume for m in meshes) - 1.0
+            errors = {
+                name: solids.wet_volume(meshes, place, UPRIGHT, METHODS[name]) / truth - 1.0
+                for name in approximate
+            }
+            whole = (
+                solids.wet_volume(meshes, place - [0.0, 0.0, 10.0], UPRIGHT, HULL)
+                / sum(m.volume for m in meshes)
+                - 1.0
+            )
             count = sum(len(m.vertices) for m in meshes)
-            rows.append((body, float(count), *(100.0 * errors[name] for name in approximate), 100.0 * whole))
+            rows.append(
+                (body, float(count), *(100.0 * errors[name] for name in approximate), 100.0 * whole)
+            )
         apart[body] = (1.0 + errors["sections"]) / (1.0 + errors["convex hull"]) - 1.0
         claims.append(
             Claim(
@@ -143,18 +171,28 @@ def density(quick: bool) -> Result:
         Claim(
             "sections agree with the hull method, dense meshes",
             "within 3 %",
-            "sections less hull: " + listed({body: percent(off, sign=True) for body, off in apart.items()}),
+            "sections less hull: "
+            + listed({body: percent(off, sign=True) for body, off in apart.items()}),
             verdict(max(map(abs, apart.values())) < 0.03, min(map(abs, apart.values())) < 0.03),
         )
     )
-    names = ["body", "vertices", *(f"{name}, error [%]" for name in approximate), "convex hull, all under water, error [%]"]
+    names = [
+        "body",
+        "vertices",
+        *(f"{name}, error [%]" for name in approximate),
+        "convex hull, all under water, error [%]",
+    ]
     return Result({"density": table_of(names, rows)}, tuple(claims))
 
 
 def approximations(quick: bool) -> Result:
     """Volumes of a bounding box, an ellipsoid and a cylinder in it against the true one, for the AUV and its parts."""
     # fractions of the box that the shape fills; the cylinder lies along any of its sides
-    shapes = {"bounding box": 1.0, "inscribed ellipsoid": np.pi / 6.0, "inscribed cylinder": np.pi / 4.0}
+    shapes = {
+        "bounding box": 1.0,
+        "inscribed ellipsoid": np.pi / 6.0,
+        "inscribed cylinder": np.pi / 4.0,
+    }
     whole = sum(m.volume for m in solids.auv())
     bodies = {
         "AUV as one": (_box(solids.auv()), whole),
@@ -162,15 +200,31 @@ def approximations(quick: bool) -> Result:
     }
     for name, part in _parts().items():
         bodies[name] = (sum(_box((m,)) for m in part), sum(m.volume for m in part))
-    errors = {name: [fill * box / true - 1.0 for fill in shapes.values()] for name, (box, true) in bodies.items()}
+    errors = {
+        name: [fill * box / true - 1.0 for fill in shapes.values()]
+        for name, (box, true) in bodies.items()
+    }
     rows = [
-        (name, true, *(fill * box for fill in shapes.values()), *(100.0 * error for error in errors[name]))
+        (
+            name,
+            true,
+            *(fill * box for fill in shapes.values()),
+            *(100.0 * error for error in errors[name]),
+        )
         for name, (box, true) in bodies.items()
     ]
-    names = ["body", "true [m^3]", *(f"{shape} [m^3]" for shape in shapes), *(f"{shape}, error [%]" for shape in shapes)]
+    names = [
+        "body",
+        "true [m^3]",
+        *(f"{shape} [m^3]" for shape in shapes),
+        *(f"{shape}, error [%]" for shape in shapes),
+    ]
     told = []
     for name in ("AUV as one", "AUV, mesh by mesh", "pressure hull"):
-        signed = {shape: percent(error, sign=True) for shape, error in zip(shapes, errors[name], strict=True)}
+        signed = {
+            shape: percent(error, sign=True)
+            for shape, error in zip(shapes, errors[name], strict=True)
+        }
         told.append(f"{name}: {listed(signed)}")
     return Result(
         {"approximations": table_of(names, rows)},
@@ -191,7 +245,9 @@ def approximations(quick: bool) -> Result:
 def _line(x: NDArray[np.float64], y: NDArray[np.float64]) -> tuple[float, float]:
     """R^2 of the best line, and the largest distance from it as a fraction of the last value."""
     off = y - np.polyval(np.polyfit(x, y, 1), x)
-    return float(1.0 - off @ off / ((y - y.mean()) @ (y - y.mean()))), float(np.abs(off).max() / y[-1])
+    return float(1.0 - off @ off / ((y - y.mean()) @ (y - y.mean()))), float(
+        np.abs(off).max() / y[-1]
+    )
 
 
 def _worst(a: NDArray[np.float64], b: NDArray[np.float64], where: NDArray[np.bool_]) -> float:
@@ -212,7 +268,16 @@ def _floating(meshes: tuple[TriMesh, ...], wanted: float) -> float:
 
 def _parts() -> dict[str, list[TriMesh]]:
     """The AUV's meshes by kind."""
-    names = ["pressure hull", "battery pod", "frame", "foam", "foam", "ballast", "ballast", *["thrusters"] * 8]
+    names = [
+        "pressure hull",
+        "battery pod",
+        "frame",
+        "foam",
+        "foam",
+        "ballast",
+        "ballast",
+        *["thrusters"] * 8,
+    ]
     parts: dict[str, list[TriMesh]] = {}
     for name, mesh in zip(names, solids.auv(), strict=True):
         parts.setdefault(name, []).append(mesh)

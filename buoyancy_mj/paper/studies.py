@@ -31,7 +31,13 @@ _ALL = (
         figures.force,
         "The dots of the upright drop lie on the curves: the force is that of the present pose.",
     ),
-    Study("areas", "Areas of cross-sections against z", statics.areas, figures.areas, "What the sections integrate."),
+    Study(
+        "areas",
+        "Areas of cross-sections against z",
+        statics.areas,
+        figures.areas,
+        "What the sections integrate.",
+    ),
     Study(
         "distributed",
         "Forces distributed over the AUV's meshes",

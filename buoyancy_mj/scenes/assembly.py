@@ -10,16 +10,23 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.engine.callbacks import PLUGIN, skips_passive
-from buoyancy_mj.engine.native import raised
+from buoyancy_mj.engine.native import pop_error
 from buoyancy_mj.engine.plugin import add_water
-from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, EngineError, ModelError, SceneError, choices
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.errors import (
+    BuoyancyError,
+    BuoyancyWarning,
+    EngineError,
+    ModelError,
+    SceneError,
+    choices,
+)
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.loads.coefficients import state_coefficients
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import EQUILIBRIUM, INTEGRATORS, Scene, Start
-from buoyancy_mj.statics.equilibrium import rest
-from buoyancy_mj.statics.vessel import vessel_of
+from buoyancy_mj.statics.equilibrium import find_rest
+from buoyancy_mj.statics.vessel import build_vessel
 
 ENVIRONMENT = "environment/"
 """What the names of the environment start with in a joined model; the vehicle's stay as they are."""
@@ -32,7 +39,7 @@ _MENDS = {
 """What to do, by a word in the compiler's message."""
 
 
-def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
+def assemble(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mujoco.MjData, int]:
     """The model of a scene, its data at the start, and how many of its bodies, from the first, are world and vehicle.
 
     The vehicle's file is the base: its options, names, keyframes and custom elements stay. Its body
@@ -46,7 +53,7 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
         SceneError: the start names a keyframe that does not exist.
     """
     path = catalog.model_path(scene.vehicle, scene.folder)
-    spec = vehicle_spec(path)
+    spec = read_vehicle(path)
     _leave_out_dry_land(spec, path, scene.water.level)
     if scene.coefficients is not None:
         state_coefficients(spec, scene.coefficients.read(scene.folder))
@@ -54,9 +61,13 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
     if scene.environment is not None:
         place = catalog.environment_path(scene.environment, scene.folder)
         try:
-            spec.attach(catalog.read_spec(place), prefix=ENVIRONMENT, frame=spec.worldbody.add_frame())
+            spec.attach(
+                catalog.read_spec(place), prefix=ENVIRONMENT, frame=spec.worldbody.add_frame()
+            )
         except ValueError as error:
-            raise ModelError(f"MuJoCo cannot join '{place}' to '{path}': {' '.join(str(error).split())}") from error
+            raise ModelError(
+                f"MuJoCo cannot join '{place}' to '{path}': {' '.join(str(error).split())}"
+            ) from error
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
@@ -74,19 +85,19 @@ def assembled(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, mu
                 hull=scene.hull,
                 fill=scene.fill,
             )
-    model = compiled(spec, path)
+    model = compile_spec(spec, path)
     _load(model, scene, bodies)
     try:
         data = mujoco.MjData(model)
     except mujoco.FatalError as error:
-        raise raised() or error from None
+        raise pop_error() or error from None
     _place(model, data, scene.start, bodies)
     if scene.start.at == EQUILIBRIUM:
         _settle(model, data, scene, bodies)
     return model, data, bodies
 
 
-def vehicle_spec(path: Path) -> mujoco.MjSpec:
+def read_vehicle(path: Path) -> mujoco.MjSpec:
     """A vehicle's file, not yet compiled, with a free joint if it has none and without water of its own.
 
     Raises:
@@ -104,25 +115,29 @@ def _weigh(spec: mujoco.MjSpec) -> None:
     off = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
     if spec.option.disableflags & off or not np.any(spec.option.gravity):
         gravity = "disables gravity" if spec.option.disableflags & off else "sets gravity to 0 0 0"
-        warnings.warn(f"the vehicle {gravity}; in water it weighs, by 0 0 -9.81", BuoyancyWarning, stacklevel=4)
+        warnings.warn(
+            f"the vehicle {gravity}; in water it weighs, by 0 0 -9.81",
+            BuoyancyWarning,
+            stacklevel=4,
+        )
         spec.option.disableflags &= ~off
         if not np.any(spec.option.gravity):
             spec.option.gravity = [0.0, 0.0, -9.81]
 
 
-def compiled(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
+def compile_spec(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
     """A spec, compiled.
 
     Raises:
         ModelError: MuJoCo refuses it; its own message is kept, with a mend where there is one.
         BuoyancyError: what the water in it refuses.
     """
-    raised()
+    pop_error()
     try:
         return spec.compile()
     except ValueError as error:
         # what the water refuses comes through MuJoCo as a text
-        refused = raised()
+        refused = pop_error()
         if isinstance(refused, BuoyancyError):
             raise refused from None
         told = " ".join(str(error).split())
@@ -134,7 +149,9 @@ def _free(spec: mujoco.MjSpec, path: Path) -> None:
     """Give the vehicle a free joint, unless a body of it already floats or moves on joints of its own."""
     roots = [body for body in spec.worldbody.bodies if not body.mocap]
     if not roots:
-        raise ModelError(f"'{path}' has no body that could float; put the vehicle's geoms into a <body>")
+        raise ModelError(
+            f"'{path}' has no body that could float; put the vehicle's geoms into a <body>"
+        )
     jointed = [body for body in roots if body.joints]
     if any(joint.type == _FREE for body in jointed for joint in body.joints):
         return
@@ -160,8 +177,12 @@ def _leave_out_dry_land(spec: mujoco.MjSpec, path: Path, level: float) -> None:
     if not planes:
         return
     # the compiler knows which way they face, however that was written
-    model = compiled(spec.copy(), path)
-    own = [g for g in range(model.ngeom) if model.geom_bodyid[g] == 0 and model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE]
+    model = compile_spec(spec.copy(), path)
+    own = [
+        g
+        for g in range(model.ngeom)
+        if model.geom_bodyid[g] == 0 and model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE
+    ]
     up, normal = np.array([0.0, 0.0, 1.0]), np.empty(3)
     for plane, g in zip(planes, own, strict=True):
         mujoco.mju_rotVecQuat(normal, up, model.geom_quat[g])
@@ -183,7 +204,11 @@ def _leave_out_own_water(spec: mujoco.MjSpec) -> None:
         if body.plugin.plugin_name == PLUGIN or body.plugin.name in [plugin.name for plugin in own]:
             body.plugin.active = False
     for plugin in own:
-        warnings.warn(f"the water '{plugin.name}' of the model gives way to the scene's", BuoyancyWarning, stacklevel=4)
+        warnings.warn(
+            f"the water '{plugin.name}' of the model gives way to the scene's",
+            BuoyancyWarning,
+            stacklevel=4,
+        )
         spec.delete(plugin)
 
 
@@ -207,10 +232,14 @@ def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int
     if start.keyframe is not None:
         names = [model.key(i).name for i in range(model.nkey)]
         if start.keyframe not in names:
-            raise SceneError(f"start: the vehicle has no keyframe '{start.keyframe}'; {choices(start.keyframe, names)}")
+            raise SceneError(
+                f"start: the vehicle has no keyframe '{start.keyframe}'; {choices(start.keyframe, names)}"
+            )
         mujoco.mj_resetDataKeyframe(model, data, names.index(start.keyframe))
         data.time = 0.0
-    free = [j for j in range(model.njnt) if model.jnt_type[j] == _FREE and model.jnt_bodyid[j] < bodies]
+    free = [
+        j for j in range(model.njnt) if model.jnt_type[j] == _FREE and model.jnt_bodyid[j] < bodies
+    ]
     if not free:
         if dataclasses.replace(start, keyframe=None) != Start():
             warnings.warn(
@@ -229,14 +258,22 @@ def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int
         q, v = model.jnt_qposadr[joint], model.jnt_dofadr[joint]
         arm = moved.apply(pose[:3] - poses[0][:3])
         attitude = moved * Rotation.from_quat(pose[3:], scalar_first=True)
-        data.qpos[q : q + 7] = [*(np.array(start.position) + arm), *attitude.as_quat(scalar_first=True)]
-        data.qvel[v : v + 6] = [*(np.array(start.velocity) + np.cross(spin, arm)), *attitude.inv().apply(spin)]
+        data.qpos[q : q + 7] = [
+            *(np.array(start.position) + arm),
+            *attitude.as_quat(scalar_first=True),
+        ]
+        data.qvel[v : v + 6] = [
+            *(np.array(start.velocity) + np.cross(spin, arm)),
+            *attitude.inv().apply(spin),
+        ]
 
 
 def _settle(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: int) -> None:
     """Bring each of the vehicle's bodies that float to rest, from where it is."""
     words = {"hull": scene.hull, "fill": scene.fill}
-    hulls = displacing_hulls(model, scene.geoms, range(1, bodies), **words)
+    hulls = find_hulls(model, scene.geoms, range(1, bodies), **words)
     for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
-        vessel = vessel_of(model, scene.water, data.qpos, body=body_name(model, root), geoms=scene.geoms, **words)
-        data.qpos[:] = rest(vessel).qpos
+        vessel = build_vessel(
+            model, scene.water, data.qpos, body=body_name(model, root), geoms=scene.geoms, **words
+        )
+        data.qpos[:] = find_rest(vessel).qpos

@@ -25,7 +25,11 @@ def scenes() -> dict[str, Path]:
 
 def models() -> dict[str, Path]:
     """Vehicle MJCF files by name: `models/NAME/NAME.xml`."""
-    return {path.parent.name: path for path in sorted(_shipped("models").glob("*/*.xml")) if path.stem == path.parent.name}
+    return {
+        path.parent.name: path
+        for path in sorted(_shipped("models").glob("*/*.xml"))
+        if path.stem == path.parent.name
+    }
 
 
 def environments() -> dict[str, Path]:
@@ -67,7 +71,9 @@ def summary(model: Path) -> str:
     return next((line for line in lines if line and not line.startswith("#")), "")
 
 
-def _found(name: str, shipped: dict[str, Path], base: Path, kind: str, error: type[BuoyancyError]) -> Path:
+def _found(
+    name: str, shipped: dict[str, Path], base: Path, kind: str, error: type[BuoyancyError]
+) -> Path:
     if name in shipped:
         return shipped[name]
     try:
@@ -79,8 +85,12 @@ def _found(name: str, shipped: dict[str, Path], base: Path, kind: str, error: ty
     if is_file:
         return path
     if is_dir:
-        raise error(f"{kind} '{name}' is a folder; give a file, or the name of one that ships: {', '.join(shipped)}")
-    raise error(f"there is no {kind} '{name}', neither a file nor one that ships; {choices(name, shipped)}")
+        raise error(
+            f"{kind} '{name}' is a folder; give a file, or the name of one that ships: {', '.join(shipped)}"
+        )
+    raise error(
+        f"there is no {kind} '{name}', neither a file nor one that ships; {choices(name, shipped)}"
+    )
 
 
 def read_spec(path: Path) -> mujoco.MjSpec:
@@ -102,7 +112,10 @@ def read_spec(path: Path) -> mujoco.MjSpec:
 def _in_package(uri: str, path: Path) -> Path:
     """The file of 'package://NAME/...', in a folder NAME above or beside what names it, or on ROS_PACKAGE_PATH."""
     package, _, rest = uri.split("://", 1)[1].partition("/")
-    roots = [*path.resolve().parents, *map(Path, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep))]
+    roots = [
+        *path.resolve().parents,
+        *map(Path, os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)),
+    ]
     for root in roots:
         for folder in (root, root / package):
             if folder.name == package and (folder / rest).is_file():

@@ -85,7 +85,11 @@ class Summary:
     def rows(self) -> list[tuple[str, str]]:
         """Names and values for a table, with units."""
         kind = "sinks" if self.net_weight > 0.0 else "floats"
-        touched = f"{self.contact_steps} steps, first at {self.first_contact:.2f} s" if self.contact_steps else "none"
+        touched = (
+            f"{self.contact_steps} steps, first at {self.first_contact:.2f} s"
+            if self.contact_steps
+            else "none"
+        )
         return [
             ("method", self.method),
             ("mass", f"{self.mass:.3f} kg"),

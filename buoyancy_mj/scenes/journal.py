@@ -12,7 +12,9 @@ from buoyancy_mj.errors import SweepError
 class Journal:
     """Rows of finished runs in a CSV file: written as they come, and read when a sweep goes on."""
 
-    def __init__(self, path: Path, header: Sequence[str], scene: str, known: Sequence[Mapping[str, Any]] = ()) -> None:
+    def __init__(
+        self, path: Path, header: Sequence[str], scene: str, known: Sequence[Mapping[str, Any]] = ()
+    ) -> None:
         """Open it, and read the runs that it holds.
 
         Args:
@@ -45,16 +47,22 @@ class Journal:
             for row in known:
                 self._writer.writerow(row)
 
-    def _take(self, path: Path, header: Iterable[str], rows: Sequence[Mapping[str, Any]], scene: str) -> None:
+    def _take(
+        self, path: Path, header: Iterable[str], rows: Sequence[Mapping[str, Any]], scene: str
+    ) -> None:
         """Believe rows of earlier sweeps, if they are of this one."""
         if list(header) != self.header:
-            raise SweepError(f"'{path}' holds other columns than this sweep has; give another --out, or remove it")
+            raise SweepError(
+                f"'{path}' holds other columns than this sweep has; give another --out, or remove it"
+            )
         for row in rows:
             if row["scene"] != scene:
                 raise SweepError(
                     f"'{path}' holds runs of another scene, or with other flags; give another --out, or remove it"
                 )
-            self.rows[int(row["run"])] = {key: "" if value is None else str(value) for key, value in row.items()}
+            self.rows[int(row["run"])] = {
+                key: "" if value is None else str(value) for key, value in row.items()
+            }
 
     def add(self, row: Mapping[str, Any]) -> None:
         """Write one row."""
@@ -81,7 +89,9 @@ def read_parquet(path: Path) -> list[dict[str, Any]]:
     try:
         rows: list[dict[str, Any]] = parquet.read_table(path).to_pylist()
     except (OSError, ArrowException) as error:
-        raise SweepError(f"cannot read the results in '{path}': {error}; give another --out, or remove it") from error
+        raise SweepError(
+            f"cannot read the results in '{path}': {error}; give another --out, or remove it"
+        ) from error
     return rows
 
 

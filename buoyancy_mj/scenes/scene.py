@@ -13,19 +13,32 @@ from buoyancy_mj.errors import SceneError, choices
 from buoyancy_mj.loads.coefficients import Dataset
 from buoyancy_mj.loads.drag import Drag
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.settings import drag_from_table, method_from_table, plain_value, water_from_table
-from buoyancy_mj.settings.settings import table as table_of
-from buoyancy_mj.settings.tables import built
+from buoyancy_mj.settings.settings import (
+    drag_from_table,
+    method_from_table,
+    plain_value,
+    table_of,
+    water_from_table,
+)
+from buoyancy_mj.settings.tables import build
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.methods import Method
 
-_VECTORS = ("cog_shift", "water.current", "start.position", "start.velocity", "start.angular_velocity")
+_VECTORS = (
+    "cog_shift",
+    "water.current",
+    "start.position",
+    "start.velocity",
+    "start.angular_velocity",
+)
 """Fields whose numbers may be set one by one, though all are missing."""
 EQUILIBRIUM = "equilibrium"
 """Value of `Start.at`."""
 INTEGRATORS = {
     name.lower(): value
-    for name, value in ((key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items())
+    for name, value in (
+        (key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items()
+    )
 }
 """MuJoCo's integrators by lower-case name."""
 
@@ -58,7 +71,14 @@ class Start:
     def __post_init__(self) -> None:
         if self.at not in (None, EQUILIBRIUM):
             raise SceneError(f"start.at is '{self.at}'; possible: {EQUILIBRIUM}, or leave it out")
-        numbers = (*self.position, self.roll, self.pitch, self.yaw, *self.velocity, *self.angular_velocity)
+        numbers = (
+            *self.position,
+            self.roll,
+            self.pitch,
+            self.yaw,
+            *self.velocity,
+            *self.angular_velocity,
+        )
         if not all(math.isfinite(number) for number in numbers):
             raise SceneError(f"start holds {numbers}; every number must be finite")
 
@@ -115,16 +135,24 @@ class Scene:
     """What relative paths in it start from."""
 
     def __post_init__(self) -> None:
-        for name, least, most in (("duration", 1e-6, 1e6), ("timestep", 1e-7, 1.0), ("record_rate", 1e-6, 1e5)):
+        for name, least, most in (
+            ("duration", 1e-6, 1e6),
+            ("timestep", 1e-7, 1.0),
+            ("record_rate", 1e-6, 1e5),
+        ):
             value = getattr(self, name)
             if not least <= value <= most:
-                raise SceneError(f"{name} is {value:g}; it must be at least {least:g} and at most {most:g}")
+                raise SceneError(
+                    f"{name} is {value:g}; it must be at least {least:g} and at most {most:g}"
+                )
         if self.mass is not None and not 0.0 < self.mass < math.inf:
             raise SceneError(f"mass is {self.mass:g} kg; it must be positive")
         if not all(math.isfinite(shift) for shift in self.cog_shift):
             raise SceneError(f"cog_shift is {self.cog_shift}; every number must be finite")
         if self.integrator.lower() not in INTEGRATORS:
-            raise SceneError(f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}")
+            raise SceneError(
+                f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}"
+            )
 
 
 def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
@@ -142,33 +170,45 @@ def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
     for setting in settings:
         _set(table, setting)
     told = "".join(f"# with {setting}\n" for setting in settings)
-    return scene_from_table(table, where=f"scene '{path.stem}'", text=told + path.read_text(), folder=path.parent)
+    return scene_from_table(
+        table, where=f"scene '{path.stem}'", text=told + path.read_text(), folder=path.parent
+    )
 
 
-def scene_from_table(table: Mapping[str, Any], where: str = "scene", text: str = "", folder: Path = Path()) -> Scene:
+def scene_from_table(
+    table: Mapping[str, Any], where: str = "scene", text: str = "", folder: Path = Path()
+) -> Scene:
     """The scene that a table of plain values describes, see `read_scene`."""
     plain = dict(table)
     given: dict[str, Any] = {"text": text, "folder": folder}
     given["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
-    given["start"] = built(Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start")
+    given["start"] = build(
+        Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start"
+    )
     given["drag"] = drag_from_table(plain.pop("drag", True), f"{where}: drag")
     if "coefficients" in plain:
         place = f"{where}: coefficients"
-        given["coefficients"] = built(Dataset, table_of(plain.pop("coefficients"), place), place)
+        given["coefficients"] = build(Dataset, table_of(plain.pop("coefficients"), place), place)
     given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
     # keys of the scene that are tables of their own are still its keys
     for key in plain:
-        known = [field.name for field in dataclasses.fields(Scene) if field.name not in ("text", "folder")]
+        known = [
+            field.name
+            for field in dataclasses.fields(Scene)
+            if field.name not in ("text", "folder")
+        ]
         if key not in known:
             raise SceneError(f"{where}: unknown key '{key}'; {choices(key, known)}")
-    return built(Scene, plain, where, **given)
+    return build(Scene, plain, where, **given)
 
 
 def _set(table: dict[str, Any], setting: str) -> None:
     """Lay one KEY=VALUE over a table; VALUE is TOML, or a bare word."""
     key, equals, text = setting.partition("=")
     if not equals or not key.strip():
-        raise SceneError(f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2")
+        raise SceneError(
+            f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2"
+        )
     value = plain_value(text)
     place: Any = table
     *path, last = key.strip().split(".")
@@ -192,7 +232,9 @@ def _entry(place: Any, part: str, key: str, *, make: bool) -> Any:
     """One step into a table or a list."""
     if isinstance(place, list):
         if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
-            raise SceneError(f"cannot set '{key}': the list has {len(place)} entries, counted from 0")
+            raise SceneError(
+                f"cannot set '{key}': the list has {len(place)} entries, counted from 0"
+            )
         return place[int(part)]
     if not isinstance(place, dict):
         raise SceneError(f"cannot set '{key}': it lies in {place!r}, no table")

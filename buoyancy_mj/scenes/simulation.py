@@ -17,7 +17,7 @@ from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
-from buoyancy_mj.scenes.assembly import assembled
+from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.frames import LAST, Energy, Frame, Summary
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.statics.vessel import PLAUSIBLE
@@ -33,7 +33,7 @@ class Simulation:
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.model, self.data, bodies = assembled(scene, afloat=True)
+        self.model, self.data, bodies = assemble(scene, afloat=True)
         # a diverging simulation is told, not set back to the start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -67,7 +67,9 @@ class Simulation:
         """Of the vehicle [kg]."""
         self.weight = self.mass * self.buoyancy.gravity
         """Of the vehicle [N]."""
-        self.displacement = float(scene.water.density * sum(hull.displacement for hull in self.hulls))
+        self.displacement = float(
+            scene.water.density * sum(hull.displaced_volume for hull in self.hulls)
+        )
         """Mass of water that its hulls displace when fully under water [kg]."""
         self._check_scale()
         self.root = int(self.model.body_rootid[self.hulls[0].body])
@@ -75,7 +77,10 @@ class Simulation:
         self._shown = mujoco.MjData(self.model)
         self._state = np.empty(mujoco.mj_stateSize(self.model, mujoco.mjtState.mjSTATE_INTEGRATION))
         # corners of the convex hulls: the deepest point is one of them
-        self._corners = [(body, _corners(self.hulls, body)) for body in sorted({hull.body for hull in self.hulls})]
+        self._corners = [
+            (body, _corners(self.hulls, body))
+            for body in sorted({hull.body for hull in self.hulls})
+        ]
         self._heights: list[tuple[float, float]] = []
         self._peak_draft, self._draft = -math.inf, math.nan
         self._wall = 0.0
@@ -186,7 +191,9 @@ class Simulation:
     def _frame(self) -> Frame:
         """The present, on data of its own: mj_forward on the running data would disturb its warm start."""
         mujoco.mj_getState(self.model, self.data, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
-        mujoco.mj_setState(self.model, self._shown, self._state, mujoco.mjtState.mjSTATE_INTEGRATION)
+        mujoco.mj_setState(
+            self.model, self._shown, self._state, mujoco.mjtState.mjSTATE_INTEGRATION
+        )
         with self._acting():
             mujoco.mj_forward(self.model, self._shown)
         data, water, now = self._shown, self.scene.water, float(self._shown.time)
@@ -207,10 +214,18 @@ class Simulation:
         """Of the vehicle (3,) [m], world frame."""
         return self._masses @ data.xipos[self.vehicle] / self.mass
 
-    def _watch(self, xpos: NDArray[np.float64], xmat: NDArray[np.float64], xipos: NDArray[np.float64], now: float) -> None:
+    def _watch(
+        self,
+        xpos: NDArray[np.float64],
+        xmat: NDArray[np.float64],
+        xipos: NDArray[np.float64],
+        now: float,
+    ) -> None:
         """Keep what the summary tells of poses."""
         self._draft = max(
-            float(self.scene.water.depth(corners @ xmat[body].reshape(3, 3).T + xpos[body], now).max())
+            float(
+                self.scene.water.depth(corners @ xmat[body].reshape(3, 3).T + xpos[body], now).max()
+            )
             for body, corners in self._corners
         )
         self._peak_draft = max(self._peak_draft, self._draft)
@@ -244,12 +259,17 @@ class Simulation:
             told = self.data.warning[warning]
             if told.number:
                 if quantity == "position":
-                    joint = int(np.searchsorted(self.model.jnt_qposadr, told.lastinfo, side="right")) - 1
+                    joint = (
+                        int(np.searchsorted(self.model.jnt_qposadr, told.lastinfo, side="right"))
+                        - 1
+                    )
                     body = int(self.model.jnt_bodyid[joint])
                 else:
                     body = int(self.model.dof_bodyid[told.lastinfo])
                 name = body_name(self.model, body)
-                raise DivergenceError(self.divergence(float(self.data.time), f"the {quantity} of body '{name}'"))
+                raise DivergenceError(
+                    self.divergence(float(self.data.time), f"the {quantity} of body '{name}'")
+                )
 
     def divergence(self, now: float, what: str = "a position, velocity or acceleration") -> str:
         """The sentence that tells it."""
@@ -268,4 +288,10 @@ def _corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:
 def _roll_pitch_yaw(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
     """Angles (3,) [rad] of a rotation (9,): yaw about z first, then pitch about y, then roll about x."""
     r = rotation.reshape(3, 3)
-    return np.array([math.atan2(r[2, 1], r[2, 2]), -math.asin(max(-1.0, min(1.0, r[2, 0]))), math.atan2(r[1, 0], r[0, 0])])
+    return np.array(
+        [
+            math.atan2(r[2, 1], r[2, 2]),
+            -math.asin(max(-1.0, min(1.0, r[2, 0]))),
+            math.atan2(r[1, 0], r[0, 0]),
+        ]
+    )

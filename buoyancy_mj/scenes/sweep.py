@@ -27,7 +27,11 @@ AT_ONCE = 64
 """Most runs in a batch: as many are lost at most when the sweep is killed."""
 ROOM = 2e8
 """Memory that the poses of a batch may take [bytes]."""
-_SUMMARY = tuple(f.name for f in dataclasses.fields(Summary) if f.name not in ("scene", "wall_time", "real_time_factor"))
+_SUMMARY = tuple(
+    f.name
+    for f in dataclasses.fields(Summary)
+    if f.name not in ("scene", "wall_time", "real_time_factor")
+)
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 
 
@@ -50,7 +54,7 @@ class Over:
         return np.linspace(self.low, self.high, self.count).tolist()
 
 
-def parsed(text: str) -> Over:
+def parse_over(text: str) -> Over:
     """'KEY=a:b:n', n values from a to b, or 'KEY=a:b' for random draws.
 
     Raises:
@@ -61,7 +65,13 @@ def parsed(text: str) -> Over:
     try:
         low, high = float(parts[0]), float(parts[1])
         count = int(parts[2]) if len(parts) == 3 else 0
-        if not (equals and key.strip() and len(parts) in (2, 3) and math.isfinite(low) and math.isfinite(high)):
+        if not (
+            equals
+            and key.strip()
+            and len(parts) in (2, 3)
+            and math.isfinite(low)
+            and math.isfinite(high)
+        ):
             raise ValueError
         if len(parts) == 3 and count < 1:
             raise ValueError
@@ -90,7 +100,10 @@ def grid(over: Sequence[Over]) -> list[tuple[float, ...]]:
 def draws(over: Sequence[Over], count: int, seed: int) -> list[tuple[float, ...]]:
     """Random combinations, each value uniform between its ends; the same for the same seed."""
     low, high = (np.array([getattr(one, end) for one in over]) for end in ("low", "high"))
-    return [tuple(row) for row in np.random.default_rng(seed).uniform(low, high, (count, len(over))).tolist()]
+    return [
+        tuple(row)
+        for row in np.random.default_rng(seed).uniform(low, high, (count, len(over))).tolist()
+    ]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -110,9 +123,13 @@ class Sweep:
 
     def __post_init__(self) -> None:
         if self.out.suffix not in (".csv", ".parquet"):
-            raise SweepError(f"--out is '{self.out}'; results go to a file that ends in .csv or .parquet")
+            raise SweepError(
+                f"--out is '{self.out}'; results go to a file that ends in .csv or .parquet"
+            )
         if len(set(self.keys)) < len(self.keys):
-            raise SweepError(f"a field is given twice: {', '.join(self.keys)}; give each --over once")
+            raise SweepError(
+                f"a field is given twice: {', '.join(self.keys)}; give each --over once"
+            )
 
     def run(self, threads: int = 0) -> Iterator[dict[str, str]]:
         """Run what has not been run yet, batch by batch; a row for each run, those of earlier sweeps first.
@@ -125,7 +142,9 @@ class Sweep:
         """
         # parquet has no end to write to, so that a journal stands beside it until all is done
         journal = self.out if self.out.suffix == ".csv" else self.out.with_suffix(".partial.csv")
-        known = read_parquet(self.out) if self.out.suffix == ".parquet" and not journal.exists() else []
+        known = (
+            read_parquet(self.out) if self.out.suffix == ".parquet" and not journal.exists() else []
+        )
         done = Journal(journal, self._header, self._digest, known)
         try:
             self._compare(journal, done.rows)
@@ -147,13 +166,25 @@ class Sweep:
     @property
     def _header(self) -> list[str]:
         """Columns of the results."""
-        return ["run", "scene", *self.keys, "status", "reason", *(name for name in _SUMMARY if name not in self.keys)]
+        return [
+            "run",
+            "scene",
+            *self.keys,
+            "status",
+            "reason",
+            *(name for name in _SUMMARY if name not in self.keys),
+        ]
 
     def _compare(self, path: Path, rows: Mapping[int, Mapping[str, str]]) -> None:
         """Refuse rows of runs that this sweep does not have, or has with other values."""
         for run, row in rows.items():
-            if run >= len(self.values) or tuple(float(row[key]) for key in self.keys) != self.values[run]:
-                raise SweepError(f"'{path}' holds runs with other values; give another --out, or remove it")
+            if (
+                run >= len(self.values)
+                or tuple(float(row[key]) for key in self.keys) != self.values[run]
+            ):
+                raise SweepError(
+                    f"'{path}' holds runs with other values; give another --out, or remove it"
+                )
 
     def _check_fields(self) -> None:
         """Tell at once what would be wrong with every run: a field that the scene lacks."""
@@ -163,7 +194,11 @@ class Sweep:
                 self._scene(run)
             except BuoyancyError as error:
                 errors.append(error)
-        if errors and len(errors) == len({0, len(self.values) - 1}) and "unknown key" in str(errors[0]):
+        if (
+            errors
+            and len(errors) == len({0, len(self.values) - 1})
+            and "unknown key" in str(errors[0])
+        ):
             raise errors[0]
 
     @functools.cached_property
@@ -175,7 +210,9 @@ class Sweep:
         return f"{self.path.stem} {hashlib.blake2b(told.encode(), digest_size=4).hexdigest()}"
 
     def _scene(self, run: int) -> Scene:
-        varied = (f"{key}={value!r}" for key, value in zip(self.keys, self.values[run], strict=True))
+        varied = (
+            f"{key}={value!r}" for key, value in zip(self.keys, self.values[run], strict=True)
+        )
         return read_scene(self.path, [*self.settings, *varied])
 
     def _batch(self, runs: Sequence[int], threads: int) -> Iterator[dict[str, Any]]:
@@ -193,12 +230,19 @@ class Sweep:
             most = max(1, int(ROOM / size))
             for first in range(0, len(group), most):
                 some = group[first : first + most]
-                reasons = together([simulation for _, simulation in some], threads)
+                reasons = join_batches([simulation for _, simulation in some], threads)
                 for (run, simulation), reason in zip(some, reasons, strict=True):
                     yield self._row(run, simulation, reason)
 
-    def _row(self, run: int, simulation: Simulation | None = None, reason: str = "") -> dict[str, Any]:
-        row = {"run": run, "scene": self._digest, "status": "failed" if reason else "done", "reason": reason}
+    def _row(
+        self, run: int, simulation: Simulation | None = None, reason: str = ""
+    ) -> dict[str, Any]:
+        row = {
+            "run": run,
+            "scene": self._digest,
+            "status": "failed" if reason else "done",
+            "reason": reason,
+        }
         row |= dict(zip(self.keys, self.values[run], strict=True))
         told = dataclasses.asdict(simulation.summary()) if simulation and not reason else {}
         return row | {name: told.get(name) for name in _SUMMARY if name not in self.keys}
@@ -209,7 +253,7 @@ def simulation_size(simulation: Simulation) -> float:
     return 8.0 * simulation.steps * (15 * simulation.model.nbody + simulation.model.nq + 1)
 
 
-def together(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
+def join_batches(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     """Run simulations of one layout to their ends, as a batch; for each the reason why it failed, or nothing."""
     if not plugin_instances(simulations[0].model):
         return [_alone(simulation) for simulation in simulations]
@@ -222,7 +266,8 @@ def together(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     started = time.perf_counter()
     recorded: dict[str | int, NDArray[Any]] = {
         name: np.zeros(
-            (len(simulations), steps, *np.shape(getattr(first.data, name))), np.int32 if name == "ncon" else float
+            (len(simulations), steps, *np.shape(getattr(first.data, name))),
+            np.int32 if name == "ncon" else float,
         )
         for name in ("xpos", "xmat", "xipos", "qpos", "ncon")
     }
@@ -238,7 +283,10 @@ def together(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     for i, simulation in enumerate(simulations):
         end = float(recorded[clock][i, -1, 0])
         reason = failed.get(i, "")
-        if not reason and not abs(end - steps * first.model.opt.timestep) < 0.5 * first.model.opt.timestep:
+        if (
+            not reason
+            and not abs(end - steps * first.model.opt.timestep) < 0.5 * first.model.opt.timestep
+        ):
             reason = simulation.divergence(end)
         if not reason:
             poses = {str(name): values[i] for name, values in recorded.items() if name != clock}
@@ -260,5 +308,13 @@ def _alone(simulation: Simulation) -> str:
 def _layout(simulation: Simulation) -> tuple[int, ...]:
     """Simulations that agree in this may be stepped in one batch."""
     model = simulation.model
-    sizes = [int(getattr(model, f"n{name}")) for name in ("q", "v", "a", "u", "body", "geom", "site", "sensordata", "mocap")]
-    return (*sizes, simulation.steps, int(np.float64(model.opt.timestep).view(np.int64)), len(plugin_instances(model)))
+    sizes = [
+        int(getattr(model, f"n{name}"))
+        for name in ("q", "v", "a", "u", "body", "geom", "site", "sensordata", "mocap")
+    ]
+    return (
+        *sizes,
+        simulation.steps,
+        int(np.float64(model.opt.timestep).view(np.int64)),
+        len(plugin_instances(model)),
+    )

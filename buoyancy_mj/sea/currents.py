@@ -78,9 +78,13 @@ class CurrentSeries:
             except ValueError:
                 if not rows and not any(character.isdigit() for character in line):
                     continue
-                raise WaterError(f"line {number} of '{path}' is '{line}'; needed are numbers: time, u, v, w") from None
+                raise WaterError(
+                    f"line {number} of '{path}' is '{line}'; needed are numbers: time, u, v, w"
+                ) from None
             if len(values) not in (3, 4) or not all(math.isfinite(value) for value in values):
-                raise WaterError(f"line {number} of '{path}' is '{line}'; needed are 3 or 4 finite numbers: time, u, v, w")
+                raise WaterError(
+                    f"line {number} of '{path}' is '{line}'; needed are 3 or 4 finite numbers: time, u, v, w"
+                )
             rows.append([*values, 0.0][:4])
         if not rows:
             raise WaterError(f"'{path}' holds no current; needed are lines of time, u, v, w")
@@ -121,7 +125,9 @@ def uniform(current: object) -> Velocity:
     return x, y, z
 
 
-def _columns(name: str, places: ArrayLike, velocities: ArrayLike) -> tuple[tuple[float, ...], tuple[Velocity, ...]]:
+def _columns(
+    name: str, places: ArrayLike, velocities: ArrayLike
+) -> tuple[tuple[float, ...], tuple[Velocity, ...]]:
     """Two columns of a table, checked."""
     try:
         at, speeds = np.asarray(places, float), np.asarray(velocities, float)
@@ -135,8 +141,12 @@ def _columns(name: str, places: ArrayLike, velocities: ArrayLike) -> tuple[tuple
     for what, table in ((name, at), ("velocities", speeds)):
         if not np.isfinite(table).all():
             row = int(np.argwhere(~np.isfinite(table))[0][0])
-            raise WaterError(f"the {what} of the current hold {table[row]} in row {row}; they must be finite numbers")
+            raise WaterError(
+                f"the {what} of the current hold {table[row]} in row {row}; they must be finite numbers"
+            )
     if not (np.diff(at) > 0.0).all():
         row = int(np.argmax(~(np.diff(at) > 0.0)))
-        raise WaterError(f"the {name} of the current must grow from row to row; {at[row + 1]:g} follows {at[row]:g}")
+        raise WaterError(
+            f"the {name} of the current must grow from row to row; {at[row + 1]:g} follows {at[row]:g}"
+        )
     return tuple(at.tolist()), tuple((x, y, z) for x, y, z in speeds.tolist())

@@ -75,9 +75,17 @@ class JonswapSea(_Sea):
         for name, least, most in (("components", 1, MOST_COMPONENTS), ("seed", 0, 2**63 - 1)):
             value = getattr(self, name)
             if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-                raise WaterError(f"{name} is {value!r}; it must be a whole number from {least} to {most}")
-        if isinstance(self.spreading, bool) or not isinstance(self.spreading, int | float) or not self.spreading > 0.0:
-            raise WaterError(f"spreading is {self.spreading!r}; it must be an exponent above 0, or inf for long crests")
+                raise WaterError(
+                    f"{name} is {value!r}; it must be a whole number from {least} to {most}"
+                )
+        if (
+            isinstance(self.spreading, bool)
+            or not isinstance(self.spreading, int | float)
+            or not self.spreading > 0.0
+        ):
+            raise WaterError(
+                f"spreading is {self.spreading!r}; it must be an exponent above 0, or inf for long crests"
+            )
         if self.significant_height > self.depth:
             raise WaterError(
                 f"significant_height is {self.significant_height} m in water {self.depth} m deep; such waves break far "
@@ -87,7 +95,12 @@ class JonswapSea(_Sea):
     def spectrum(self, omega: ArrayLike) -> NDArray[np.float64]:
         """Energy density S [m^2 s] at angular frequencies (any shape) [rad/s], whose integral is Hs^2 / 16."""
         ratio = np.asarray(omega, float) * self.peak_period / (2.0 * math.pi)
-        scale = (self.significant_height / 4.0) ** 2 / self._moments[0] * self.peak_period / (2.0 * math.pi)
+        scale = (
+            (self.significant_height / 4.0) ** 2
+            / self._moments[0]
+            * self.peak_period
+            / (2.0 * math.pi)
+        )
         return scale * _shape(ratio, self.gamma)
 
     @property
@@ -103,7 +116,12 @@ class JonswapSea(_Sea):
         phases = [2.0 * math.pi * stream.random() for _ in range(n)]
         ratio, energy, second = _summed(self.gamma)
         edges = np.interp(np.arange(n + 1) * energy[-1] / n, energy, ratio)
-        omegas = np.sqrt(np.diff(np.interp(edges, ratio, second)) / (energy[-1] / n)) * 2.0 * math.pi / self.peak_period
+        omegas = (
+            np.sqrt(np.diff(np.interp(edges, ratio, second)) / (energy[-1] / n))
+            * 2.0
+            * math.pi
+            / self.peak_period
+        )
         directions = np.full(n, self.direction)
         if math.isfinite(self.spreading):
             shares = [(i + 0.5) / n for i in range(n)]
@@ -165,7 +183,9 @@ class PiersonMoskowitzSea(_Sea):
     @functools.cached_property
     def as_jonswap(self) -> JonswapSea:
         """The same sea under its more general name."""
-        return JonswapSea(**{f.name: getattr(self, f.name) for f in dataclasses.fields(self)}, gamma=1.0)
+        return JonswapSea(
+            **{f.name: getattr(self, f.name) for f in dataclasses.fields(self)}, gamma=1.0
+        )
 
     @property
     def rows(self) -> NDArray[np.float64]:

@@ -37,7 +37,11 @@ class Water:
     def __post_init__(self) -> None:
         finite("density", self.density, above=0.0)
         finite("level", self.level, least=-LARGEST, most=LARGEST)
-        waves = (self.waves,) if hasattr(self.waves, "rows") or not isinstance(self.waves, Sequence) else tuple(self.waves)
+        waves = (
+            (self.waves,)
+            if hasattr(self.waves, "rows") or not isinstance(self.waves, Sequence)
+            else tuple(self.waves)
+        )
         for wave in waves:
             if not hasattr(wave, "rows"):
                 raise WaterError(
@@ -45,7 +49,9 @@ class Water:
                 )
         count = sum(len(wave.rows) for wave in waves)
         if count > MOST_WAVES:
-            raise WaterError(f"the sea has {count} waves; it may have {MOST_WAVES} at most, so leave out the smallest")
+            raise WaterError(
+                f"the sea has {count} waves; it may have {MOST_WAVES} at most, so leave out the smallest"
+            )
         object.__setattr__(self, "waves", waves)
         if not isinstance(self.current, CurrentProfile | CurrentSeries):
             object.__setattr__(self, "current", uniform(self.current))
@@ -91,17 +97,23 @@ class Water:
         """Velocity of the water (..., 3) [m/s] at points (..., 3) [m] and a time [s]: current and waves."""
         p = np.asarray(points, float)
         out = np.empty((p.size // 3, 3))
-        kernels.velocities(self.rows, self.current_rows, p.reshape(-1, 3), self.level, float(time), out)
+        kernels.velocities(
+            self.rows, self.current_rows, p.reshape(-1, 3), self.level, float(time), out
+        )
         return out.reshape(p.shape)
 
     def acceleration(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Rate of that velocity at one place (..., 3) [m/s^2], at points (..., 3) [m] and a time [s]."""
         p = np.asarray(points, float)
         out = np.empty((p.size // 3, 3))
-        kernels.accelerations(self.rows, self.current_rows, p.reshape(-1, 3), self.level, float(time), out)
+        kernels.accelerations(
+            self.rows, self.current_rows, p.reshape(-1, 3), self.level, float(time), out
+        )
         return out.reshape(p.shape)
 
-    def pressure(self, points: ArrayLike, time: float, gravity: float = GRAVITY) -> NDArray[np.float64]:
+    def pressure(
+        self, points: ArrayLike, time: float, gravity: float = GRAVITY
+    ) -> NDArray[np.float64]:
         """Pressure (...) [Pa] over the air's at points (..., 3) [m] in the water: zero on its surface.
 
         That of linear waves, stretched to the surface, see `kernels.waves.head`; over the surface there

@@ -70,7 +70,9 @@ class RegularWave:
         told = {name: value for name, value in given.items() if not _is_nan(value)}
         if len(told) != 1:
             got = " and ".join(told) or "none"
-            raise WaterError(f"a regular wave got {got}; give exactly one of frequency [Hz], period [s], wavelength [m]")
+            raise WaterError(
+                f"a regular wave got {got}; give exactly one of frequency [Hz], period [s], wavelength [m]"
+            )
         (name, value), *_ = told.items()
         finite(name, value, least=SMALLEST, most=LARGEST)
         # the other two follow
@@ -86,7 +88,9 @@ class RegularWave:
             k = wavenumber(2.0 * math.pi * frequency, self.depth, self.gravity)
             object.__setattr__(self, "wavelength", 2.0 * math.pi / k)
         if not SMALLEST**2 <= self.wavelength <= LARGEST**3:
-            raise WaterError(f"a wave with a {name} of {value} would be {self.wavelength:.3g} m long; give another {name}")
+            raise WaterError(
+                f"a wave with a {name} of {value} would be {self.wavelength:.3g} m long; give another {name}"
+            )
 
     @property
     def rows(self) -> NDArray[np.float64]:
@@ -133,7 +137,9 @@ class LevelOscillation:
     @property
     def rows(self) -> NDArray[np.float64]:
         """The oscillation as one row (1, 6), see `Wave`."""
-        return np.array([[self.amplitude, 0.0, 0.0, 2.0 * math.pi * self.frequency, self.phase, math.inf]])
+        return np.array(
+            [[self.amplitude, 0.0, 0.0, 2.0 * math.pi * self.frequency, self.phase, math.inf]]
+        )
 
 
 def wavenumber(omega: float, depth: float = math.inf, gravity: float = GRAVITY) -> float:
@@ -143,14 +149,18 @@ def wavenumber(omega: float, depth: float = math.inf, gravity: float = GRAVITY) 
         return deep
     # k h lies above both its deep value and its shallow one, sqrt(deep h), and below their sum
     low, high = max(deep * depth, math.sqrt(deep * depth)), deep * depth + math.sqrt(deep * depth)
-    kh = brentq(lambda q: q * math.tanh(q) - deep * depth, low * 0.999, high, xtol=1e-15, rtol=1e-14)
+    kh = brentq(
+        lambda q: q * math.tanh(q) - deep * depth, low * 0.999, high, xtol=1e-15, rtol=1e-14
+    )
     return float(kh) / depth
 
 
 def water_depth(value: object) -> None:
     """Refuse what is no depth of water."""
     if isinstance(value, bool) or not isinstance(value, int | float) or not value >= SMALLEST:
-        raise WaterError(f"wave depth is {value!r}; it must be at least {SMALLEST:g} m (inf is deep water)")
+        raise WaterError(
+            f"wave depth is {value!r}; it must be at least {SMALLEST:g} m (inf is deep water)"
+        )
 
 
 def _is_nan(value: object) -> bool:
@@ -158,9 +168,20 @@ def _is_nan(value: object) -> bool:
     return isinstance(value, float) and math.isnan(value)
 
 
-def finite(name: str, value: object, *, above: float = -math.inf, least: float = -math.inf, most: float = math.inf) -> None:
+def finite(
+    name: str,
+    value: object,
+    *,
+    above: float = -math.inf,
+    least: float = -math.inf,
+    most: float = math.inf,
+) -> None:
     """Refuse what is not a finite number in range."""
-    if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not math.isfinite(value):
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, int | float | np.number)
+        or not math.isfinite(value)
+    ):
         raise WaterError(f"{name} is {value!r}; it must be a finite number")
     if not value > above:
         raise WaterError(f"{name} is {value}; it must be above {above:g}")

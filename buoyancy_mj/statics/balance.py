@@ -19,7 +19,9 @@ STRIDE = 0.1
 _STEPS, _LONGEST = 200, 0.5
 
 
-def floated(vessel: Vessel, rotation: NDArray[np.float64], height: float | None = None) -> Afloat:
+def find_draft(
+    vessel: Vessel, rotation: NDArray[np.float64], height: float | None = None
+) -> Afloat:
     """The vessel turned by world_from_vessel (3, 3), at the height at which it displaces its mass.
 
     One that weighs just what it displaces stays where it is, or as much deeper as it takes to be under water.
@@ -56,7 +58,7 @@ def floated(vessel: Vessel, rotation: NDArray[np.float64], height: float | None 
                 return afloat
 
 
-def balanced(
+def find_balance(
     vessel: Vessel,
     rotation: NDArray[np.float64],
     height: float | None = None,
@@ -81,12 +83,14 @@ def balanced(
         EquilibriumError: it sinks; or no balance was found.
     """
     basis = np.eye(2) if free is None else free
-    afloat = floated(vessel, rotation, height)
+    afloat = find_draft(vessel, rotation, height)
     scale = vessel.weight * vessel.radius
     reach = _LONGEST
     for count in range(_STEPS):
         torque = basis.T @ afloat.force[1:]
-        values, vectors = np.linalg.eigh(basis.T @ at_constant_displacement(afloat) @ basis)
+        values, vectors = np.linalg.eigh(
+            basis.T @ stiffness_at_constant_displacement(afloat) @ basis
+        )
         axes = basis @ vectors
         if np.linalg.norm(torque) <= BALANCED * scale:
             lower = _downhill(afloat, values, axes) if stable else None
@@ -95,7 +99,7 @@ def balanced(
             afloat = lower
             continue
         step = _step(values, vectors.T @ torque, 1e-9 * scale, reach, downhill=stable)
-        trial = turned(afloat, axes @ step)
+        trial = rotate(afloat, axes @ step)
         if _better(trial, afloat, basis, stable=stable):
             reach = min(2.0 * reach, _LONGEST)
             afloat = trial
@@ -113,13 +117,13 @@ def balanced(
     )
 
 
-def turned(afloat: Afloat, turn: NDArray[np.float64]) -> Afloat:
+def rotate(afloat: Afloat, turn: NDArray[np.float64]) -> Afloat:
     """Turned about horizontal axes by (2,) [rad], at the draft that carries its weight."""
     rotation = Rotation.from_rotvec([*turn, 0.0]).as_matrix() @ afloat.rotation
-    return floated(afloat.vessel, rotation, float(afloat.position[2]))
+    return find_draft(afloat.vessel, rotation, float(afloat.position[2]))
 
 
-def at_constant_displacement(afloat: Afloat) -> NDArray[np.float64]:
+def stiffness_at_constant_displacement(afloat: Afloat) -> NDArray[np.float64]:
     """Restoring torques per turn about x and y (2, 2) [N m], the draft following so that the volume stays."""
     whole = afloat.stiffness
     heave = whole[0, 0]
@@ -137,18 +141,25 @@ def _refuse_to_sink(vessel: Vessel, surplus: float) -> None:
         )
 
 
-def _downhill(afloat: Afloat, values: NDArray[np.float64], axes: NDArray[np.float64]) -> Afloat | None:
+def _downhill(
+    afloat: Afloat, values: NDArray[np.float64], axes: NDArray[np.float64]
+) -> Afloat | None:
     """A lower pose beside a summit, a saddle, or where the curvature tells nothing; None at the bottom."""
     scale = afloat.vessel.weight * afloat.vessel.radius
     if values[0] >= 1e-6 * scale:
         return None
     ways = (way * part * STRIDE for part in (1.0, 0.1, 0.01) for way in (1.0, -1.0))
-    poses = (turned(afloat, way * axes[:, 0]) for way in ways)
+    poses = (rotate(afloat, way * axes[:, 0]) for way in ways)
     return next((pose for pose in poses if pose.energy < afloat.energy - 1e-10 * scale), None)
 
 
 def _step(
-    values: NDArray[np.float64], along: NDArray[np.float64], least: float, reach: float, *, downhill: bool
+    values: NDArray[np.float64],
+    along: NDArray[np.float64],
+    least: float,
+    reach: float,
+    *,
+    downhill: bool,
 ) -> NDArray[np.float64]:
     """A turn (k,) [rad] along the axes of stiffness."""
     divisor = np.where(np.abs(values) > least, values, np.copysign(least, values))
@@ -159,7 +170,9 @@ def _step(
 
 def _better(trial: Afloat, afloat: Afloat, basis: NDArray[np.float64], *, stable: bool) -> bool:
     """Whether a step is to be taken."""
-    less = bool(np.linalg.norm(basis.T @ trial.force[1:]) < np.linalg.norm(basis.T @ afloat.force[1:]))
+    less = bool(
+        np.linalg.norm(basis.T @ trial.force[1:]) < np.linalg.norm(basis.T @ afloat.force[1:])
+    )
     if not stable:
         return less
     # within rounding of the energy the torque tells more

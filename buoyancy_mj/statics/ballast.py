@@ -11,14 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
-from buoyancy_mj.hulls.hull import close_pairs
+from buoyancy_mj.hulls.hull import find_close_pairs
 from buoyancy_mj.hulls.selection import GEOMS, body_name
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.mesh import solid_of
+from buoyancy_mj.meshes.mesh import to_manifold
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.ballast_sites import LEAST, Place, least, places_for
+from buoyancy_mj.statics.ballast_sites import LEAST, BallastSite, find_sites, solve_least_ballast
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, attitude, hydrostatics_of
-from buoyancy_mj.statics.vessel import Afloat, Vessel, vessel_of
+from buoyancy_mj.statics.vessel import Afloat, Vessel, build_vessel
 
 LEAD, FOAM = 11_340.0, 200.0
 """Densities [kg/m^3] of what is added, unless said otherwise: lead, and closed-cell PVC foam as used under water."""
@@ -27,7 +27,7 @@ _NOBODY = 1 << 30
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Placed:
+class BallastItem:
     """One thing added to a vessel."""
 
     kind: str
@@ -58,7 +58,7 @@ class Placed:
 class Ballast:
     """What to add to a vessel, and what becomes of it."""
 
-    placed: tuple[Placed, ...]
+    placed: tuple[BallastItem, ...]
     """Each thing added; none where the vessel is right as it is."""
     hydrostatics: Hydrostatics
     """Of the vessel with all that, at the wanted draft and attitude."""
@@ -78,16 +78,29 @@ class Ballast:
         """
         bodies = {body.name: body for body in spec.bodies}
         if self.root not in bodies:
-            raise ModelError(f"there is no body '{self.root}' to carry the ballast; {choices(self.root, bodies)}")
+            raise ModelError(
+                f"there is no body '{self.root}' to carry the ballast; {choices(self.root, bodies)}"
+            )
         for one in self.placed:
             name = one.label
             if name in bodies:
-                raise ModelError(f"body '{name}' is there already; ballast the vehicle as it was, without '{name}'")
-            body = bodies[self.root].add_body(name=name, pos=one.position.tolist(), mass=one.mass, explicitinertial=True)
+                raise ModelError(
+                    f"body '{name}' is there already; ballast the vehicle as it was, without '{name}'"
+                )
+            body = bodies[self.root].add_body(
+                name=name, pos=one.position.tolist(), mass=one.mass, explicitinertial=True
+            )
             body.ipos, body.inertia = [0.0] * 3, [0.4 * one.mass * one.radius**2] * 3
             if one.displaces:
                 ball = mujoco.mjtGeom.mjGEOM_SPHERE
-                body.add_geom(name=name, type=ball, size=[one.radius, 0.0, 0.0], contype=_NOBODY, conaffinity=0, mass=0.0)
+                body.add_geom(
+                    name=name,
+                    type=ball,
+                    size=[one.radius, 0.0, 0.0],
+                    contype=_NOBODY,
+                    conaffinity=0,
+                    mass=0.0,
+                )
                 for text in spec.texts:
                     if text.name.rsplit("/", 1)[-1] == GEOMS:
                         text.data = f"{text.data} {name}"
@@ -142,23 +155,27 @@ def ballast(
 
     Raises:
         BallastError: these places cannot do it; the message says what they could.
-        ModelError: neither draft nor reserve, or both; values that make no sense; see also `vessel.vessel_of`.
+        ModelError: neither draft nor reserve, or both; values that make no sense; see also `statics.build_vessel`.
         MeshError: a mesh that bounds no volume.
     """
     if (draft is None) == (reserve is None):
-        raise ModelError("ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral; not both")
+        raise ModelError(
+            "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral; not both"
+        )
     numbers = [value for value in (draft, reserve, heel, trim, bg) if value is not None]
-    if not all(math.isfinite(value) for value in numbers) or not (foam_density > 0.0 and mass_density > 0.0):
+    if not all(math.isfinite(value) for value in numbers) or not (
+        foam_density > 0.0 and mass_density > 0.0
+    ):
         raise ModelError(
             f"draft or reserve, heel, trim and bg are {numbers}, densities {mass_density:g} and {foam_density:g}; all must "
             "be finite, densities positive"
         )
-    vessel = vessel_of(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
+    vessel = build_vessel(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
     pose = _wanted(vessel, draft, heel, trim)
     # foam that lifts less than it weighs there is none
-    lifting = [place for place in places_for(pose, "foam", foam, foam_density) if place.lift > 1.0]
-    places = [*places_for(pose, "ballast", masses, mass_density), *lifting]
-    placed = _merged(vessel, places, least(pose, places, reserve or 0.0, bg))
+    lifting = [place for place in find_sites(pose, "foam", foam, foam_density) if place.lift > 1.0]
+    places = [*find_sites(pose, "ballast", masses, mass_density), *lifting]
+    placed = _merged(vessel, places, solve_least_ballast(pose, places, reserve or 0.0, bg))
     after = _ballasted(vessel, placed)
     moved = pose.position + pose.rotation @ (after.root_from_vessel - vessel.root_from_vessel)
     result = hydrostatics_of(after.at(moved, pose.rotation))
@@ -184,28 +201,39 @@ def _wanted(vessel: Vessel, draft: float | None, heel: float, trim: float) -> Af
     return vessel.at([*vessel.position[:2], height], turn)
 
 
-def _merged(vessel: Vessel, places: Sequence[Place], masses: NDArray[np.float64]) -> tuple[Placed, ...]:
+def _merged(
+    vessel: Vessel, places: Sequence[BallastSite], masses: NDArray[np.float64]
+) -> tuple[BallastItem, ...]:
     """What goes where; the corners of a box as one."""
     result = []
     for kind, name in dict.fromkeys((place.kind, place.name) for place in places):
-        own = [(place, mass) for place, mass in zip(places, masses, strict=True) if (place.kind, place.name) == (kind, name)]
+        own = [
+            (place, mass)
+            for place, mass in zip(places, masses, strict=True)
+            if (place.kind, place.name) == (kind, name)
+        ]
         mass = sum(share for _, share in own)
         if mass > LEAST * vessel.mass:
             middle = sum((share / mass * place.point for place, share in own), np.zeros(3))
             first = own[0][0]
             at = middle + vessel.root_from_vessel
-            result.append(Placed(kind, name, at, float(mass), first.density, first.displaces))
+            result.append(BallastItem(kind, name, at, float(mass), first.density, first.displaces))
     return tuple(result)
 
 
-def _ballasted(vessel: Vessel, placed: Sequence[Placed]) -> Vessel:
+def _ballasted(vessel: Vessel, placed: Sequence[BallastItem]) -> Vessel:
     """The vessel with all that."""
     mass = vessel.mass + sum(one.mass for one in placed)
     points = [one.position - vessel.root_from_vessel for one in placed]
-    shift = sum((one.mass * point for one, point in zip(placed, points, strict=True)), np.zeros(3)) / mass
+    shift = (
+        sum((one.mass * point for one, point in zip(placed, points, strict=True)), np.zeros(3))
+        / mass
+    )
     inertia = vessel.inertia + vessel.mass * _about(shift)
     for one, point in zip(placed, points, strict=True):
-        inertia = inertia + one.mass * _about(point - shift) + 0.4 * one.mass * one.radius**2 * np.eye(3)
+        inertia = (
+            inertia + one.mass * _about(point - shift) + 0.4 * one.mass * one.radius**2 * np.eye(3)
+        )
     balls = [(one, point) for one, point in zip(placed, points, strict=True) if one.displaces]
     return dataclasses.replace(
         vessel,
@@ -245,10 +273,10 @@ def _check(vessel: Vessel, found: Hydrostatics, reserve: float, before: int) -> 
             BuoyancyWarning,
             stacklevel=3,
         )
-    for i, j in close_pairs(vessel.meshes):
+    for i, j in find_close_pairs(vessel.meshes):
         pair = vessel.names[i], vessel.names[j]
         if max(i, j) >= before and vessel.fills[i] == vessel.fills[j] == 1.0:
-            solids = solid_of(*vessel.meshes[i].compact), solid_of(*vessel.meshes[j].compact)
+            solids = to_manifold(*vessel.meshes[i].compact), to_manifold(*vessel.meshes[j].compact)
             common = (solids[0] ^ solids[1]).volume() if solids[0] and solids[1] else 0.0
             if common > 1e-3 * min(vessel.meshes[i].volume, vessel.meshes[j].volume):
                 warnings.warn(

@@ -18,7 +18,7 @@ LEAST = 1e-6
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Place:
+class BallastSite:
     """Where something may be added."""
 
     kind: str
@@ -31,29 +31,42 @@ class Place:
     """Mass of water displaced there for each kilogram added, at the wanted pose."""
 
 
-def places_for(pose: Afloat, kind: str, where: str | Sequence[str] | ArrayLike, density: float) -> list[Place]:
+def find_sites(
+    pose: Afloat, kind: str, where: str | Sequence[str] | ArrayLike, density: float
+) -> list[BallastSite]:
     """The sites that match, or the corners of a box."""
     vessel = pose.vessel
     words = [where] if isinstance(where, str) else list(where)  # type: ignore[arg-type]
     if all(isinstance(word, str) for word in words):
         found: dict[str, NDArray[np.float64]] = {}
         for word in map(str, words):
-            matching = {name: at for name, at in vessel.sites.items() if fnmatch.fnmatchcase(name, word)}
+            matching = {
+                name: at for name, at in vessel.sites.items() if fnmatch.fnmatchcase(name, word)
+            }
             if not matching and word != f"{kind}*":
-                raise ModelError(f"no site of the vessel matches '{word}'; {choices(word, vessel.sites)}")
+                raise ModelError(
+                    f"no site of the vessel matches '{word}'; {choices(word, vessel.sites)}"
+                )
             found |= matching
         return [_place(pose, kind, name, at, at, density) for name, at in found.items()]
     box = np.asarray(where, float)
     if box.shape != (2, 3) or not np.isfinite(box).all() or (box[0] > box[1]).any():
-        raise ModelError(f"a box for {kind} is {box.tolist()}; it must be its lowest and highest corner (2, 3) [m]")
+        raise ModelError(
+            f"a box for {kind} is {box.tolist()}; it must be its lowest and highest corner (2, 3) [m]"
+        )
     middle = box.mean(axis=0) - vessel.root_from_vessel
     corners = np.array(np.meshgrid(*box.T)).reshape(3, -1).T - vessel.root_from_vessel
     return [_place(pose, kind, "box", corner, middle, density) for corner in corners]
 
 
 def _place(
-    pose: Afloat, kind: str, name: str, point: NDArray[np.float64], middle: NDArray[np.float64], density: float
-) -> Place:
+    pose: Afloat,
+    kind: str,
+    name: str,
+    point: NDArray[np.float64],
+    middle: NDArray[np.float64],
+    density: float,
+) -> BallastSite:
     """A place, in or out of the hulls as `middle` is."""
     vessel = pose.vessel
     inside = [
@@ -64,12 +77,23 @@ def _place(
     ]
     taken, hull = max(inside, default=(0.0, ""))
     if kind == "foam" and taken == 1.0:
-        raise BallastError(f"foam at '{name}' lies inside hull '{hull}', where it displaces nothing more; put it outside")
+        raise BallastError(
+            f"foam at '{name}' lies inside hull '{hull}', where it displaces nothing more; put it outside"
+        )
     wet = pose.position[2] + pose.rotation[2] @ point < vessel.water.level
-    return Place(kind, name, point, density, taken < 1.0, (1.0 - taken) * float(wet) * vessel.water.density / density)
+    return BallastSite(
+        kind,
+        name,
+        point,
+        density,
+        taken < 1.0,
+        (1.0 - taken) * float(wet) * vessel.water.density / density,
+    )
 
 
-def least(pose: Afloat, places: Sequence[Place], reserve: float, bg: float | None) -> NDArray[np.float64]:
+def solve_least_ballast(
+    pose: Afloat, places: Sequence[BallastSite], reserve: float, bg: float | None
+) -> NDArray[np.float64]:
     """The least masses at the places (n,) [kg]."""
     vessel = pose.vessel
     displaced = vessel.water.density * pose.volume
@@ -82,7 +106,10 @@ def least(pose: Afloat, places: Sequence[Place], reserve: float, bg: float | Non
         # sum of m z less that of the water displaced is -bg times the mass
         rows = np.vstack([rows, net * arms[:, 2] + bg])
         wanted = np.append(wanted, displaced * pose.arm[2] - bg * vessel.mass)
-    if np.abs(wanted[0]) <= LEAST * vessel.mass and np.abs(wanted[1:]).max() <= LEAST * vessel.mass * vessel.radius:
+    if (
+        np.abs(wanted[0]) <= LEAST * vessel.mass
+        and np.abs(wanted[1:]).max() <= LEAST * vessel.mass * vessel.radius
+    ):
         return np.zeros(len(places))
     if not places:
         raise BallastError(
@@ -96,12 +123,18 @@ def least(pose: Afloat, places: Sequence[Place], reserve: float, bg: float | Non
     raise BallastError(_impossible(vessel, places, rows, wanted, bg))
 
 
-def _solved(cost: NDArray[np.float64], rows: NDArray[np.float64], wanted: NDArray[np.float64]) -> OptimizeResult:
+def _solved(
+    cost: NDArray[np.float64], rows: NDArray[np.float64], wanted: NDArray[np.float64]
+) -> OptimizeResult:
     return linprog(cost, A_eq=rows, b_eq=wanted, bounds=(0.0, None), method="highs")
 
 
 def _impossible(
-    vessel: Vessel, places: Sequence[Place], rows: NDArray[np.float64], wanted: NDArray[np.float64], bg: float | None
+    vessel: Vessel,
+    places: Sequence[BallastSite],
+    rows: NDArray[np.float64],
+    wanted: NDArray[np.float64],
+    bg: float | None,
 ) -> str:
     """What these places could do, as a sentence."""
     zero = np.zeros(len(places))
@@ -114,7 +147,9 @@ def _impossible(
         n = len(places)
         slack = np.zeros((3, 4))
         slack[1:] = np.kron(np.eye(2), [1.0, -1.0])
-        best = _solved(np.append(np.zeros(n), np.ones(4)), np.hstack([rows[:3], slack]), wanted[:3]).x
+        best = _solved(
+            np.append(np.zeros(n), np.ones(4)), np.hstack([rows[:3], slack]), wanted[:3]
+        ).x
         left = slack[1:] @ best[n:]
         return (
             f"these places cannot level it: {left[0]:+.4g} kg m along x and {left[1]:+.4g} kg m along y would be left; give "

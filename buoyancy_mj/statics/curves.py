@@ -21,7 +21,9 @@ class DraftCurves:
     """Areas cut out of the surface (n,) [m^2]."""
 
 
-def draft_curves(vessel: Vessel, rotation: NDArray[np.float64], count: int = 101) -> DraftCurves:
+def compute_draft_curves(
+    vessel: Vessel, rotation: NDArray[np.float64], count: int = 101
+) -> DraftCurves:
     """Volume and waterplane area from touching the water to being under it.
 
     Args:
@@ -34,7 +36,9 @@ def draft_curves(vessel: Vessel, rotation: NDArray[np.float64], count: int = 101
     # just off the ends, where flat faces lie in the surface
     drafts = (high - low) * np.linspace(1e-6, 1.0 - 1e-6, count)
     poses = [vessel.at([0.0, 0.0, vessel.water.level - draft - low], rotation) for draft in drafts]
-    return DraftCurves(drafts, np.array([p.volume for p in poses]), np.array([p.waterplane[0] for p in poses]))
+    return DraftCurves(
+        drafts, np.array([p.volume for p in poses]), np.array([p.waterplane[0] for p in poses])
+    )
 
 
 def waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float) -> NDArray[np.float64]:
@@ -42,7 +46,9 @@ def waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float) -> N
     height = float((vessel.points @ rotation[2]).min()) + draft
     cuts = [
         trimesh.intersections.mesh_plane(
-            trimesh.Trimesh(mesh.vertices @ rotation.T, mesh.faces, process=False), [0.0, 0.0, 1.0], [0.0, 0.0, height]
+            trimesh.Trimesh(mesh.vertices @ rotation.T, mesh.faces, process=False),
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, height],
         )
         for mesh in vessel.meshes
     ]

@@ -12,9 +12,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.balance import STRIDE, at_constant_displacement, balanced, turned
+from buoyancy_mj.statics.balance import (
+    STRIDE,
+    find_balance,
+    rotate,
+    stiffness_at_constant_displacement,
+)
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, attitude, hydrostatics_of
-from buoyancy_mj.statics.vessel import Afloat, Vessel, vessel_of
+from buoyancy_mj.statics.vessel import Afloat, Vessel, build_vessel
 
 INDIFFERENT = 1e-3
 """Part of the largest eigenvalue below which nothing restores worth the name: a period thirty times the shortest."""
@@ -76,7 +81,7 @@ def equilibrium(
 ) -> Equilibrium | tuple[Equilibrium, ...]:
     """The pose in which a vessel comes to rest, its joints held.
 
-    Found by Newton steps that always lead down, see `balance.balanced`.
+    Found by Newton steps that always lead down, see `statics.find_balance`.
 
     Args:
         model: any MuJoCo model with a body that floats.
@@ -92,26 +97,26 @@ def equilibrium(
 
     Raises:
         EquilibriumError: it sinks; or no balance was found near the start.
-        ModelError: see `vessel.vessel_of`; or nothing of it is free to float.
+        ModelError: see `statics.build_vessel`; or nothing of it is free to float.
         MeshError: a mesh that bounds no volume.
     """
-    vessel = vessel_of(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
-    return stable_rests(vessel) if all else rest(vessel, stable=stable)
+    vessel = build_vessel(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
+    return find_stable_rests(vessel) if all else find_rest(vessel, stable=stable)
 
 
-def rest(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
+def find_rest(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
     """The pose in which a vessel comes to rest from where it is, see `equilibrium`."""
-    afloat, steps = balanced(vessel, vessel.rotation, stable=stable)
+    afloat, steps = find_balance(vessel, vessel.rotation, stable=stable)
     return _equilibrium(afloat, steps)
 
 
-def stable_rests(vessel: Vessel) -> tuple[Equilibrium, ...]:
+def find_stable_rests(vessel: Vessel) -> tuple[Equilibrium, ...]:
     """All poses in which a vessel stays at rest, see `equilibrium`; those of lowest energy first."""
     found: list[Equilibrium] = []
     kept: list[Afloat] = []
     for down in trimesh.creation.icosphere(subdivisions=1).vertices:
         turn, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [down])
-        afloat, steps = balanced(vessel, turn.as_matrix())
+        afloat, steps = find_balance(vessel, turn.as_matrix())
         new = _equilibrium(afloat, steps)
         if new.stability != "unstable" and not any(_same(one, afloat) for one in kept):
             kept.append(afloat)
@@ -134,7 +139,9 @@ def _equilibrium(afloat: Afloat, steps: int) -> Equilibrium:
     return Equilibrium(
         qpos=vessel.qpos_at(final),
         hydrostatics=found,
-        eigenvalues=np.asarray(np.linalg.eigvalsh(inverse @ (0.5 * (restoring + restoring.T)) @ inverse.T), float),
+        eigenvalues=np.asarray(
+            np.linalg.eigvalsh(inverse @ (0.5 * (restoring + restoring.T)) @ inverse.T), float
+        ),
         energy=final.energy,
         iterations=steps,
     )
@@ -147,7 +154,7 @@ def _same(one: Afloat, two: Afloat) -> bool:
         return False
     if _angle(one, two) < 1e-4:
         return True
-    soft, stiff = np.linalg.eigvalsh(at_constant_displacement(one))
+    soft, stiff = np.linalg.eigvalsh(stiffness_at_constant_displacement(one))
     if stiff < SOFT * scale:
         return True
     return bool(soft < SOFT * stiff) and any(
@@ -160,14 +167,14 @@ def _same(one: Afloat, two: Afloat) -> bool:
 def _valley(afloat: Afloat, way: float) -> Iterator[Afloat]:
     """Poses along the softest direction, the stiff one kept in balance, once round or until they rise."""
     base, scale = afloat.energy, afloat.vessel.weight * afloat.vessel.radius
-    axis = way * np.linalg.eigh(at_constant_displacement(afloat))[1][:, 0]
+    axis = way * np.linalg.eigh(stiffness_at_constant_displacement(afloat))[1][:, 0]
     for _ in range(math.ceil(2.0 * math.pi / STRIDE)):
-        afloat = turned(afloat, STRIDE * axis)
+        afloat = rotate(afloat, STRIDE * axis)
         for _ in range(2):
-            values, axes = np.linalg.eigh(at_constant_displacement(afloat))
+            values, axes = np.linalg.eigh(stiffness_at_constant_displacement(afloat))
             stiff = axes[:, 1]
             if values[1] > 0.0:
-                afloat = turned(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
+                afloat = rotate(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
         axis = axes[:, 0] * np.copysign(1.0, axes[:, 0] @ axis)
         yield afloat
         if afloat.energy > base + LEVEL * scale:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.vessel import Afloat, vessel_of
+from buoyancy_mj.statics.vessel import Afloat, build_vessel
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -150,7 +150,9 @@ class Hydrostatics:
             squared = np.where(restoring > 0.0, inertia / restoring, math.inf)
         return 2.0 * math.pi * np.sqrt(squared)
 
-    def modes(self, added_mass: ArrayLike | None = None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def modes(
+        self, added_mass: ArrayLike | None = None
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Undamped motions of the coupled vessel that have a period: the periods (n,) [s], and how it moves (n, 6).
 
         The eigenvectors of (M + A)^-1 C, scaled to a largest component of 1. What grows instead of
@@ -159,7 +161,9 @@ class Hydrostatics:
         Raises:
             ModelError: an added mass of another shape, or not finite.
         """
-        values, vectors = np.linalg.eig(np.linalg.solve(self.mass_matrix + _matrix(added_mass), self.stiffness))
+        values, vectors = np.linalg.eig(
+            np.linalg.solve(self.mass_matrix + _matrix(added_mass), self.stiffness)
+        )
         scale = np.abs(values).max(initial=0.0)
         swings = (values.real > 1e-9 * scale) & (np.abs(values.imag) <= 1e-9 * scale)
         periods = 2.0 * math.pi / np.sqrt(values.real[swings])
@@ -194,10 +198,10 @@ def hydrostatics(
         fill: and which displace in part, likewise.
 
     Raises:
-        ModelError: see `vessel.vessel_of`.
+        ModelError: see `statics.build_vessel`.
         MeshError: a mesh that bounds no volume.
     """
-    vessel = vessel_of(model, water, qpos, body=body, geoms=geoms, hull=hull, fill=fill)
+    vessel = build_vessel(model, water, qpos, body=body, geoms=geoms, hull=hull, fill=fill)
     return hydrostatics_of(vessel.at(vessel.position, vessel.rotation))
 
 
@@ -281,5 +285,7 @@ def _matrix(added_mass: ArrayLike | None) -> NDArray[np.float64]:
         return np.zeros((6, 6))
     given = np.asarray(added_mass, float)
     if given.shape not in ((6,), (6, 6)) or not np.isfinite(given).all():
-        raise ModelError(f"added mass has shape {given.shape}; it must be finite, a diagonal (6,) or a matrix (6, 6)")
+        raise ModelError(
+            f"added mass has shape {given.shape}; it must be finite, a diagonal (6,) or a matrix (6, 6)"
+        )
     return np.diag(given) if given.ndim == 1 else given

@@ -16,9 +16,9 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.balance import balanced, floated
+from buoyancy_mj.statics.balance import find_balance, find_draft
 from buoyancy_mj.statics.hydrostatics import attitude
-from buoyancy_mj.statics.vessel import Afloat, Vessel, vessel_of
+from buoyancy_mj.statics.vessel import Afloat, Vessel, build_vessel
 
 POINTS = ("deck_edge*", "downflooding*")
 """Sites that are looked for without being asked."""
@@ -60,7 +60,13 @@ class RightingArm:
         Raises:
             ModelError: heels outside of the curve.
         """
-        end = high if high is not None else self.vanishing if math.isfinite(self.vanishing) else float(self.heel[-1])
+        end = (
+            high
+            if high is not None
+            else self.vanishing
+            if math.isfinite(self.vanishing)
+            else float(self.heel[-1])
+        )
         if not self.heel[0] <= low <= end <= self.heel[-1]:
             raise ModelError(
                 f"area from {low:g} to {end:g} rad; the curve goes from {self.heel[0]:g} to {self.heel[-1]:g} rad"
@@ -107,7 +113,7 @@ def righting_arm(
 
     Raises:
         EquilibriumError: it sinks, or does not balance at all.
-        ModelError: heels that are not finite, another trim, points that match no site, see also `vessel.vessel_of`.
+        ModelError: heels that are not finite, another trim, points that match no site, see also `statics.build_vessel`.
         MeshError: a mesh that bounds no volume.
     """
     heels = np.radians(np.arange(181.0)) if heel is None else np.unique(np.asarray(heel, float))
@@ -115,7 +121,7 @@ def righting_arm(
         raise ModelError("heel and axis must be finite angles [rad], at least one of heel")
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
-    vessel = vessel_of(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
+    vessel = build_vessel(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
     return curve(vessel, heels, axis=axis, free=trim == "free", points=points)
 
 
@@ -140,7 +146,9 @@ def curve(
             except EquilibriumError as error:
                 if last is None:
                     raise
-                warnings.warn(f"the righting arm ends there: {error}", BuoyancyWarning, stacklevel=3)
+                warnings.warn(
+                    f"the righting arm ends there: {error}", BuoyancyWarning, stacklevel=3
+                )
                 break
             poses[angle] = last
     heels = np.array(sorted(poses))
@@ -152,17 +160,25 @@ def curve(
         gz=gz,
         trim=np.array([heeled.trim(pose) for pose in ordered]),
         draft=np.array(
-            [vessel.water.level - pose.position[2] - (vessel.points @ pose.rotation[2]).min() for pose in ordered]
+            [
+                vessel.water.level - pose.position[2] - (vessel.points @ pose.rotation[2]).min()
+                for pose in ordered
+            ]
         ),
         vanishing=_vanishing(heeled, heels, gz, ordered, ahead),
-        immersed={name: _immersed(heeled, vessel.sites[name], heels, ordered, ahead) for name in _names(vessel, points)},
+        immersed={
+            name: _immersed(heeled, vessel.sites[name], heels, ordered, ahead)
+            for name in _names(vessel, points)
+        },
     )
 
 
 class _Heeled:
     """A vessel brought to a heel, in axes whose x is the axis of heel."""
 
-    def __init__(self, vessel: Vessel, upright: NDArray[np.float64], axis: float, free: bool) -> None:
+    def __init__(
+        self, vessel: Vessel, upright: NDArray[np.float64], axis: float, free: bool
+    ) -> None:
         self.vessel, self.free = vessel, free
         heading = attitude(upright)[0] + axis
         self.back = Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix()
@@ -175,12 +191,12 @@ class _Heeled:
         turn = self.back @ Rotation.from_euler("YX", [lean, heel]).as_matrix() @ self.upright
         height = None if last is None else float(last.position[2])
         if not self.free:
-            return floated(self.vessel, turn, height)
+            return find_draft(self.vessel, turn, height)
         try:
-            afloat, _ = balanced(self.vessel, turn, height, free=self.across, stable=False)
+            afloat, _ = find_balance(self.vessel, turn, height, free=self.across, stable=False)
         except EquilibriumError:
             # where the balance ends, the vessel goes downhill to another
-            afloat, _ = balanced(self.vessel, turn, height, free=self.across)
+            afloat, _ = find_balance(self.vessel, turn, height, free=self.across)
         # the cosine of the trim
         if self._turn(afloat)[2, 1:] @ [math.sin(heel), math.cos(heel)] < 0.0:
             raise EquilibriumError(
@@ -202,7 +218,11 @@ class _Heeled:
 
 
 def _vanishing(
-    heeled: _Heeled, heels: NDArray[np.float64], gz: NDArray[np.float64], poses: Sequence[Afloat], ahead: Sequence[int]
+    heeled: _Heeled,
+    heels: NDArray[np.float64],
+    gz: NDArray[np.float64],
+    poses: Sequence[Afloat],
+    ahead: Sequence[int],
 ) -> float:
     """The first zero of the arm past its largest."""
     if not ahead or gz[ahead].max() <= 0.0:
@@ -236,7 +256,9 @@ def _immersed(
     return math.nan
 
 
-def _root(heeled: _Heeled, value: Callable[[Afloat], float], last: Afloat, low: float, high: float) -> float:
+def _root(
+    heeled: _Heeled, value: Callable[[Afloat], float], last: Afloat, low: float, high: float
+) -> float:
     """The heel at which a value changes sign; the far end if rounding hides it."""
 
     def at(angle: float) -> float:
@@ -254,6 +276,8 @@ def _names(vessel: Vessel, points: Sequence[str] | str) -> list[str]:
     for pattern in patterns:
         found = [name for name in vessel.sites if fnmatch.fnmatchcase(name, pattern)]
         if not found and pattern not in POINTS:
-            raise ModelError(f"no site of the vessel matches '{pattern}'; {choices(pattern, vessel.sites)}")
+            raise ModelError(
+                f"no site of the vessel matches '{pattern}'; {choices(pattern, vessel.sites)}"
+            )
         names |= dict.fromkeys(found)
     return list(names)

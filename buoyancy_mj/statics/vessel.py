@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ModelError, choices
-from buoyancy_mj.hulls.geoms import displacing_hulls
+from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels import clip
@@ -69,7 +69,8 @@ class Vessel:
     def meshes(self) -> tuple[TriMesh, ...]:
         """The hulls, in the vessel's axes."""
         return tuple(
-            solid.transformed(turn, place) for solid, turn, place in zip(self.solids, self.turns, self.places, strict=True)
+            solid.transformed(turn, place)
+            for solid, turn, place in zip(self.solids, self.turns, self.places, strict=True)
         )
 
     @functools.cached_property
@@ -82,7 +83,8 @@ class Vessel:
         """Centre of buoyancy fully submerged, in the vessel's axes (3,) [m]."""
         shares = self.fills * [solid.volume for solid in self.solids]
         middles = [
-            turn @ solid.centroid + place for solid, turn, place in zip(self.solids, self.turns, self.places, strict=True)
+            turn @ solid.centroid + place
+            for solid, turn, place in zip(self.solids, self.turns, self.places, strict=True)
         ]
         return shares @ middles / self.volume
 
@@ -120,7 +122,14 @@ class Vessel:
         cut = self._packed.waterplanes(places, turns, origin)
         extents = np.concatenate([cut[:, 6:8].min(axis=0), cut[:, 8:10].max(axis=0)])
         return Afloat(
-            self, origin, turn, volume, arm, float(wet[:, clip.WETTED_AREA].sum()), cut[:, :6].sum(axis=0), extents
+            self,
+            origin,
+            turn,
+            volume,
+            arm,
+            float(wet[:, clip.WETTED_AREA].sum()),
+            cut[:, :6].sum(axis=0),
+            extents,
         )
 
     def qpos_at(self, afloat: "Afloat") -> NDArray[np.float64]:
@@ -136,7 +145,9 @@ class Vessel:
         joint = int(self.model.body_jntadr[self.root])
         qpos, start = self.qpos.copy(), int(self.model.jnt_qposadr[joint])
         qpos[start : start + 3] = afloat.position - afloat.rotation @ self.root_from_vessel
-        qpos[start + 3 : start + 7] = Rotation.from_matrix(afloat.rotation).as_quat(scalar_first=True)
+        qpos[start + 3 : start + 7] = Rotation.from_matrix(afloat.rotation).as_quat(
+            scalar_first=True
+        )
         return qpos
 
     @functools.cached_property
@@ -191,10 +202,12 @@ class Afloat:
         pressure = self.vessel.water.density * self.vessel.gravity
         a, ax, ay, axx, axy, ayy = self.waterplane
         lever = self.volume * self.arm[2]
-        return pressure * np.array([[a, ay, -ax], [ay, ayy + lever, -axy], [-ax, -axy, axx + lever]])
+        return pressure * np.array(
+            [[a, ay, -ax], [ay, ayy + lever, -axy], [-ax, -axy, axx + lever]]
+        )
 
 
-def vessel_of(
+def build_vessel(
     model: mujoco.MjModel,
     water: Water | None = None,
     qpos: ArrayLike | None = None,
@@ -220,10 +233,12 @@ def vessel_of(
             along -z, no geom that displaces water.
         MeshError: a mesh that bounds no volume.
     """
-    return vessel_with(model, displacing_hulls(model, geoms, hull=hull, fill=fill), water, qpos, body=body)
+    return build_vessel_from_hulls(
+        model, find_hulls(model, geoms, hull=hull, fill=fill), water, qpos, body=body
+    )
 
 
-def vessel_with(
+def build_vessel_from_hulls(
     model: mujoco.MjModel,
     hulls: Sequence[Hull],
     water: Water | None = None,
@@ -231,11 +246,18 @@ def vessel_with(
     *,
     body: str | None = None,
 ) -> Vessel:
-    """A vessel of a model, with these hulls; see `vessel_of`."""
+    """A vessel of a model, with these hulls; see `build_vessel`."""
     sea = water or Water()
     x, y, z = model.opt.gravity
-    if x != 0.0 or y != 0.0 or not z < 0.0 or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
-        raise ModelError(f"gravity is {x:g} {y:g} {z:g} or disabled; floating needs it along -z, as in gravity='0 0 -9.81'")
+    if (
+        x != 0.0
+        or y != 0.0
+        or not z < 0.0
+        or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY
+    ):
+        raise ModelError(
+            f"gravity is {x:g} {y:g} {z:g} or disabled; floating needs it along -z, as in gravity='0 0 -9.81'"
+        )
     root = _root(model, [one.body for one in hulls], body)
     data = mujoco.MjData(model)
     data.qpos[:] = _coordinates(model, qpos, root)
@@ -270,7 +292,9 @@ def vessel_with(
         names=tuple(one.name for one in own),
         bodies=tuple(one.body for one in own),
         solids=tuple(one.mesh for one in own),
-        places=np.array([turn @ (data.geom_xpos[one.geom] - data.xpos[root]) - centre for one in own]),
+        places=np.array(
+            [turn @ (data.geom_xpos[one.geom] - data.xpos[root]) - centre for one in own]
+        ),
         turns=np.array([turn @ data.geom_xmat[one.geom].reshape(3, 3) for one in own]),
         fills=np.array([one.fill for one in own]),
         sites={
@@ -283,7 +307,10 @@ def vessel_with(
 
 def _root(model: mujoco.MjModel, bodies: Sequence[int], name: str | None) -> int:
     """The root body that floats."""
-    roots = {body_name(model, int(model.body_rootid[body])): int(model.body_rootid[body]) for body in bodies}
+    roots = {
+        body_name(model, int(model.body_rootid[body])): int(model.body_rootid[body])
+        for body in bodies
+    }
     if name is None:
         return next(iter(roots.values()))
     if name not in roots:

@@ -53,7 +53,9 @@ class ConvexHull:
 
     def __post_init__(self) -> None:
         if self.centroid not in CENTROIDS:
-            raise MethodError(f"centroid is {self.centroid!r}; {choices(str(self.centroid), CENTROIDS)}")
+            raise MethodError(
+                f"centroid is {self.centroid!r}; {choices(str(self.centroid), CENTROIDS)}"
+            )
         if not isinstance(self.cut, bool):
             raise MethodError(f"cut is {self.cut!r}; it must be True or False")
         if (
@@ -61,9 +63,11 @@ class ConvexHull:
             or not isinstance(self.resort_every, int | np.integer)
             or self.resort_every < 0
         ):
-            raise MethodError(f"resort_every is {self.resort_every!r}; it must be a number of steps, or 0 for no sorting")
+            raise MethodError(
+                f"resort_every is {self.resort_every!r}; it must be a number of steps, or 0 for no sorting"
+            )
 
-    def packed(
+    def pack(
         self,
         meshes: Sequence[TriMesh],
         frames: ArrayLike,
@@ -113,12 +117,16 @@ class PackedConvexHulls:
         self._vertices = [mesh.compact[0] for mesh in meshes]
         self._edges = []
         if method.cut:
-            self._edges = [np.unique(np.sort(faces_to_edges(mesh.compact[1])), axis=0) for mesh in meshes]
+            self._edges = [
+                np.unique(np.sort(faces_to_edges(mesh.compact[1])), axis=0) for mesh in meshes
+            ]
         self._all = [np.arange(len(vertices)) for vertices in self._vertices]
         self._length = max(float(np.ptp(vertices, axis=0).max()) for vertices in self._vertices)
         self._runs: OrderedDict[int, _Run] = OrderedDict()
         self._points = np.empty((max(len(vertices) for vertices in self._vertices), 4))
-        self._counts = dict.fromkeys(("calls", "vertices", "vertex_checks", "sorts", "hulls", "hull_points"), 0)
+        self._counts = dict.fromkeys(
+            ("calls", "vertices", "vertex_checks", "sorts", "hulls", "hull_points"), 0
+        )
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -131,7 +139,11 @@ class PackedConvexHulls:
         return dict(self._counts)
 
     def submerge(
-        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+        self,
+        positions: NDArray[np.float64],
+        rotations: NDArray[np.float64],
+        time: float,
+        run: int = 0,
     ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         state = self._runs.pop(run, None) or _Run(self._all)
@@ -149,15 +161,24 @@ class PackedConvexHulls:
                 self._counts["hulls"] += 1
                 self._counts["hull_points"] += len(points)
             volume, centroid = hull_moments(points, self.method.centroid)
-            self.results[h] = self._fills[h] * volume, *(centroid + positions[frame]), np.nan, np.nan
+            self.results[h] = (
+                self._fills[h] * volume,
+                *(centroid + positions[frame]),
+                np.nan,
+                np.nan,
+            )
         self._counts["calls"] += 1
         return self.results
 
-    def _ages(self, run: _Run, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float) -> bool:
+    def _ages(
+        self, run: _Run, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float
+    ) -> bool:
         """Whether the orders must be made anew: they are as many steps old, or the bodies were set elsewhere by hand."""
         poses = np.hstack([rotations[self.frames], positions[self.frames] / self._length])
         later = time > run.time
-        moved = not time >= run.time or not np.abs(poses - run.poses).max() <= (JUMP if later else NUDGE)
+        moved = not time >= run.time or not np.abs(poses - run.poses).max() <= (
+            JUMP if later else NUDGE
+        )
         run.age += later
         run.time, run.poses = time, poses
         if self.method.resort_every and (moved or run.age >= self.method.resort_every):
@@ -166,7 +187,13 @@ class PackedConvexHulls:
         return False
 
     def _wet(
-        self, h: int, run: _Run, origin: NDArray[np.float64], rotation: NDArray[np.float64], time: float, sort: bool
+        self,
+        h: int,
+        run: _Run,
+        origin: NDArray[np.float64],
+        rotation: NDArray[np.float64],
+        time: float,
+        sort: bool,
     ) -> NDArray[np.float64]:
         """Points (n, 3) [m] of a hull that span what is wet of it, relative to the origin of its frame."""
         walk = self.method.resort_every > 0 and not sort
@@ -191,7 +218,9 @@ class PackedConvexHulls:
             # an end that the walk did not reach may yet be wet: then the end itself
             above = np.minimum(outer[:, 3:], 0.0)
             inside = points[row[inner]]
-            points = np.vstack([points, inside + inside[:, 3:] / (inside[:, 3:] - above) * (outer - inside)])
+            points = np.vstack(
+                [points, inside + inside[:, 3:] / (inside[:, 3:] - above) * (outer - inside)]
+            )
         return points[:, :3]
 
     def _placed(
@@ -205,12 +234,22 @@ class PackedConvexHulls:
     ) -> NDArray[np.float64]:
         """Vertices (n, 4), relative to the origin, and their depths; up to the first dry one if so wished."""
         seen = slices.place(
-            self._vertices[h], order, until_dry, origin, rotation, self.water.level, self.water.rows, time, self._points
+            self._vertices[h],
+            order,
+            until_dry,
+            origin,
+            rotation,
+            self.water.level,
+            self.water.rows,
+            time,
+            self._points,
         )
         return self._points[:seen].copy()
 
 
-def hull_moments(points: NDArray[np.float64], centroid: str = "hull") -> tuple[float, NDArray[np.float64]]:
+def hull_moments(
+    points: NDArray[np.float64], centroid: str = "hull"
+) -> tuple[float, NDArray[np.float64]]:
     """Volume [m^3] of the convex hull of points (n, 3) [m], and its centroid (3,) [m] as `ConvexHull` says.
 
     The volume is the sum of the signed tetrahedra that the hull's triangles span with a point of
@@ -239,4 +278,6 @@ def hull_moments(points: NDArray[np.float64], centroid: str = "hull") -> tuple[f
     volume = float(tetrahedra.sum())
     if not volume > 0.0:
         return nothing
-    return volume, middle if centroid == "vertices" else middle + tetrahedra @ (a + b + c) / (4.0 * volume)
+    return volume, middle if centroid == "vertices" else middle + tetrahedra @ (a + b + c) / (
+        4.0 * volume
+    )

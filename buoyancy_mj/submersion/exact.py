@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MethodError
 from buoyancy_mj.kernels import clip, local, pressure, waterplane
-from buoyancy_mj.meshes.mesh import TriMesh, refined
-from buoyancy_mj.meshes.tree import Tree, grown
+from buoyancy_mj.meshes.mesh import TriMesh, refine
+from buoyancy_mj.meshes.tree import Tree, grow_tree
 from buoyancy_mj.sea.water import Water
 
 MOST_TRIANGLES = 200_000
@@ -40,9 +40,11 @@ class Exact:
             or not isinstance(self.tolerance, int | float)
             or not 0.0 < self.tolerance <= 1.0
         ):
-            raise MethodError(f"tolerance is {self.tolerance!r}; it must be a part of the volume, above 0 and at most 1")
+            raise MethodError(
+                f"tolerance is {self.tolerance!r}; it must be a part of the volume, above 0 and at most 1"
+            )
 
-    def packed(
+    def pack(
         self,
         meshes: Sequence[TriMesh],
         frames: ArrayLike,
@@ -88,7 +90,14 @@ class PackedHulls:
         self._whole = np.array(
             [
                 [
-                    *(fill * m.volume, *m.centroid, m.area, *m.bounds.mean(axis=0), *(0.5 * m.extents), fill),
+                    *(
+                        fill * m.volume,
+                        *m.centroid,
+                        m.area,
+                        *m.bounds.mean(axis=0),
+                        *(0.5 * m.extents),
+                        fill,
+                    ),
                     *local.plan(water.rows, 0.5 * float(np.linalg.norm(m.extents))),
                 ]
                 for m, fill in zip(meshes, fills, strict=True)
@@ -103,9 +112,14 @@ class PackedHulls:
         self._nodes = np.cumsum([0, *(len(tree.spans) for tree in trees)])
         self._vertices = np.concatenate([tree.vertices for tree in trees])
         # unsigned, since Numba asks of a signed index whether it counts from the end
-        self._faces = np.concatenate([t.faces + start for t, start in zip(trees, starts, strict=False)]).astype(np.uint32)
+        self._faces = np.concatenate(
+            [t.faces + start for t, start in zip(trees, starts, strict=False)]
+        ).astype(np.uint32)
         self._spans = np.concatenate(
-            [t.spans + np.array([f, f, v, v, n]) for t, f, v, n in zip(trees, firsts, starts, self._nodes, strict=False)]
+            [
+                t.spans + np.array([f, f, v, v, n])
+                for t, f, v, n in zip(trees, firsts, starts, self._nodes, strict=False)
+            ]
         )
         self._boxes = np.concatenate([tree.boxes for tree in trees])
         self._moments = np.concatenate([tree.moments for tree in trees])
@@ -130,12 +144,23 @@ class PackedHulls:
     @property
     def arrays(self) -> Mapping[str, NDArray[Any]]:
         """The arrays of `ARRAYS`, for compiled code to submerge the hulls without Python."""
-        return {name: getattr(self, "frames" if name == "frames" else f"_{name}") for name in self.ARRAYS}
+        return {
+            name: getattr(self, "frames" if name == "frames" else f"_{name}")
+            for name in self.ARRAYS
+        }
 
     @property
     def triangles(self) -> tuple[NDArray[Any], ...]:
         """What `kernels.panels` reads of the hulls."""
-        return self._vertices, self._faces, self._areas, self._nodes, self._spans, self._whole, self.frames
+        return (
+            self._vertices,
+            self._faces,
+            self._areas,
+            self._nodes,
+            self._spans,
+            self._whole,
+            self.frames,
+        )
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -143,7 +168,11 @@ class PackedHulls:
         return {}
 
     def submerge(
-        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+        self,
+        positions: NDArray[np.float64],
+        rotations: NDArray[np.float64],
+        time: float,
+        run: int = 0,
     ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         clip.submerge_hulls(
@@ -168,7 +197,12 @@ class PackedHulls:
         return self.results
 
     def press(
-        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, *, dynamic: bool
+        self,
+        positions: NDArray[np.float64],
+        rotations: NDArray[np.float64],
+        time: float,
+        *,
+        dynamic: bool,
     ) -> NDArray[np.float64]:
         """Pressure on all hulls (h, 6), see `kernels.pressure.press_hulls`."""
         rows = np.empty((len(self._whole), 6))
@@ -195,7 +229,10 @@ class PackedHulls:
         return rows
 
     def waterplanes(
-        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], about: NDArray[np.float64]
+        self,
+        positions: NDArray[np.float64],
+        rotations: NDArray[np.float64],
+        about: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         """Waterplanes of all hulls on the still level about a point (h, 10), see `kernels.waterplane.waterplanes`."""
         rows = np.empty((len(self._whole), waterplane.COLUMNS))
@@ -221,7 +258,7 @@ def _tree(mesh: TriMesh, edge: float) -> Tree:
     """The tree of a mesh with edges no longer than `edge`; once for as long as the mesh lives."""
     trees = _TREES.setdefault(mesh, {})
     if edge not in trees:
-        trees[edge] = grown(*refined(mesh.vertices, mesh.faces, edge))
+        trees[edge] = grow_tree(*refine(mesh.vertices, mesh.faces, edge))
     return trees[edge]
 
 
@@ -240,8 +277,13 @@ def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> 
     return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
 
 
-def _longest_edges(meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water, tolerance: float) -> list[float]:
+def _longest_edges(
+    meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water, tolerance: float
+) -> list[float]:
     """`longest_edge` of each mesh, from the volume and the area of all meshes of its body."""
-    volumes, areas = np.array([mesh.volume for mesh in meshes]), np.array([mesh.area for mesh in meshes])
+    volumes, areas = (
+        np.array([mesh.volume for mesh in meshes]),
+        np.array([mesh.area for mesh in meshes]),
+    )
     joint = [(volumes[bodies == body].sum(), areas[bodies == body].sum()) for body in bodies]
     return [longest_edge(volume, area, water, tolerance) for volume, area in joint]

@@ -28,7 +28,11 @@ class Packed(Protocol):
         ...
 
     def submerge(
-        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+        self,
+        positions: NDArray[np.float64],
+        rotations: NDArray[np.float64],
+        time: float,
+        run: int = 0,
     ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`.
 
@@ -49,7 +53,7 @@ class Method(Protocol):
         """What it is called in scenes and on the command line."""
         ...
 
-    def packed(
+    def pack(
         self,
         meshes: Sequence[TriMesh],
         frames: ArrayLike,
@@ -77,7 +81,7 @@ METHODS: Mapping[str, type[Exact] | type[ConvexHull] | type[Sections]] = {
 """The methods by name."""
 
 
-def method_of(method: str | Method) -> Method:
+def parse_method(method: str | Method) -> Method:
     """A method as it is, or the one of a name with its defaults.
 
     Raises:
@@ -87,6 +91,8 @@ def method_of(method: str | Method) -> Method:
         if method not in METHODS:
             raise MethodError(f"unknown method '{method}'; {choices(method, METHODS)}")
         return METHODS[method]()
-    if isinstance(method, type) or not hasattr(method, "packed"):
-        raise MethodError(f"{method!r} is no method; possible are {', '.join(METHODS)}, or one of them with options")
+    if isinstance(method, type) or not hasattr(method, "pack"):
+        raise MethodError(
+            f"{method!r} is no method; possible are {', '.join(METHODS)}, or one of them with options"
+        )
     return method

@@ -12,7 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import integrate
+from scipy.integrate import cumulative_simpson, cumulative_trapezoid
 
 from buoyancy_mj.errors import MethodError, choices
 from buoyancy_mj.kernels import clip, slices
@@ -59,11 +59,17 @@ class Sections:
         if self.step is not None and not (_is_number(self.step) and 0.0 < self.step < math.inf):
             raise MethodError(f"step is {self.step!r}; it must be a positive length [m]")
         if self.axis is not None:
-            if len(self.axis) != 3 or not all(_is_number(x) and math.isfinite(x) for x in self.axis) or not any(self.axis):
-                raise MethodError(f"axis is {self.axis!r}; it must be three finite numbers, not all zero")
+            if (
+                len(self.axis) != 3
+                or not all(_is_number(x) and math.isfinite(x) for x in self.axis)
+                or not any(self.axis)
+            ):
+                raise MethodError(
+                    f"axis is {self.axis!r}; it must be three finite numbers, not all zero"
+                )
             object.__setattr__(self, "axis", tuple(float(x) for x in self.axis))
 
-    def packed(
+    def pack(
         self,
         meshes: Sequence[TriMesh],
         frames: ArrayLike,
@@ -102,7 +108,9 @@ class PackedSections:
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
         self._meshes = [mesh.compact for mesh in meshes]
-        self._middles = [0.5 * (vertices.min(axis=0) + vertices.max(axis=0)) for vertices, _ in self._meshes]
+        self._middles = [
+            0.5 * (vertices.min(axis=0) + vertices.max(axis=0)) for vertices, _ in self._meshes
+        ]
         for vertices, _ in self._meshes:
             length = float(np.linalg.norm(np.ptp(vertices, axis=0)))
             if method.step is not None and length / method.step > MOST_SECTIONS:
@@ -113,8 +121,14 @@ class PackedSections:
         self._counts = dict.fromkeys(("calls", "sections", "crossings", "tabulated", "look_ups"), 0)
         self._tables = None
         if method.axis is not None:
-            rotations = np.tile(np.eye(3), (len(meshes), 1, 1)) if turns is None else np.asarray(turns, float)
-            self._tables = [self._table(h, np.asarray(method.axis) @ turn) for h, turn in enumerate(rotations)]
+            rotations = (
+                np.tile(np.eye(3), (len(meshes), 1, 1))
+                if turns is None
+                else np.asarray(turns, float)
+            )
+            self._tables = [
+                self._table(h, np.asarray(method.axis) @ turn) for h, turn in enumerate(rotations)
+            ]
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -127,7 +141,11 @@ class PackedSections:
         return dict(self._counts)
 
     def submerge(
-        self, positions: NDArray[np.float64], rotations: NDArray[np.float64], time: float, run: int = 0
+        self,
+        positions: NDArray[np.float64],
+        rotations: NDArray[np.float64],
+        time: float,
+        run: int = 0,
     ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         for h, frame in enumerate(self.frames):
@@ -137,7 +155,11 @@ class PackedSections:
             origin, turn = positions[frame], rotations[frame].reshape(3, 3)
             x, y, z = origin + turn @ self._middles[h]
             depth = float(self.water.elevation(x, y, time)) - z
-            moments = self._upright(h, turn, depth) if self._tables is None else self._along(h, turn, depth)
+            moments = (
+                self._upright(h, turn, depth)
+                if self._tables is None
+                else self._along(h, turn, depth)
+            )
             volume = moments[0] if moments[0] > 0.0 else 0.0
             centroid = moments[1:] / volume + origin if volume else np.full(3, np.nan)
             self.results[h] = self._fills[h] * volume, *centroid, np.nan, np.nan
@@ -148,10 +170,12 @@ class PackedSections:
         """Volume and first moments (4,) about the origin of the frame, from sections parallel to the still surface."""
         vertices, faces = self._meshes[h]
         points = vertices @ turn.T
-        s, rows, crossings = sections(points, faces, self.method.step, depth + float(turn[2] @ self._middles[h]))
+        s, rows, crossings = sections(
+            points, faces, self.method.step, depth + float(turn[2] @ self._middles[h])
+        )
         self._counts["sections"] += len(s)
         self._counts["crossings"] += crossings
-        return integrated(rows, s, self.method.rule)[-1]
+        return integrate(rows, s, self.method.rule)[-1]
 
     def _along(self, h: int, turn: NDArray[np.float64], depth: float) -> NDArray[np.float64]:
         """The same from the table along the hull's own axis, up or down to where the surface meets it."""
@@ -176,7 +200,7 @@ class PackedSections:
         vertices, faces = self._meshes[h]
         s, rows, _ = sections(vertices @ axes.T, faces, self.method.step, math.inf)
         self._counts["tabulated"] += len(s)
-        return axes, s, rows, integrated(rows, s, self.method.rule)
+        return axes, s, rows, integrate(rows, s, self.method.rule)
 
 
 def sections(
@@ -206,7 +230,7 @@ def sections(
     return s, np.column_stack([out, out[:, 0] * s]), int(crossings)
 
 
-def integrated(rows: NDArray[np.float64], s: NDArray[np.float64], rule: str) -> NDArray[np.float64]:
+def integrate(rows: NDArray[np.float64], s: NDArray[np.float64], rule: str) -> NDArray[np.float64]:
     """Integrals (n, k) of rows (n, k) over s (n,), from its first value up to each; at least one row, of zeros.
 
     The last interval is shorter than the others, and always a trapezoid: a parabola through three
@@ -214,10 +238,10 @@ def integrated(rows: NDArray[np.float64], s: NDArray[np.float64], rule: str) -> 
     """
     if len(s) < 2:
         return np.zeros((1, rows.shape[1]))
-    out = integrate.cumulative_trapezoid(rows, s, axis=0, initial=0.0)
+    out = cumulative_trapezoid(rows, s, axis=0, initial=0.0)
     if rule == "simpson" and len(s) > 3:
         out[-1] -= out[-2]
-        out[:-1] = integrate.cumulative_simpson(rows[:-1], dx=s[1] - s[0], axis=0, initial=0.0)
+        out[:-1] = cumulative_simpson(rows[:-1], dx=s[1] - s[0], axis=0, initial=0.0)
         out[-1] += out[-2]
     return out
 

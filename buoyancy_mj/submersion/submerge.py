@@ -13,7 +13,7 @@ from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
-from buoyancy_mj.submersion.methods import Method, Packed, method_of
+from buoyancy_mj.submersion.methods import Method, Packed, parse_method
 
 
 @dataclasses.dataclass(frozen=True)
@@ -55,16 +55,22 @@ def submerge(
     origin = np.ascontiguousarray(position, float)
     turn = np.eye(3) if rotation is None else np.ascontiguousarray(rotation, float)
     if origin.shape != (3,) or not math.isfinite(sum(origin.tolist(), float(time))):
-        raise MeshError(f"position is {position!r} and time {time}; they must be three finite numbers and one")
+        raise MeshError(
+            f"position is {position!r} and time {time}; they must be three finite numbers and one"
+        )
     if turn.shape != (3, 3) or not clip.is_rotation(turn):
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
-    chosen, sea = method_of(method), water or _STILL
+    chosen, sea = parse_method(method), water or _STILL
     if type(chosen) is Exact:
         with _LOCK:
-            row = _packed(mesh, sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
+            row = (
+                _packed(mesh, sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
+            )
     else:
         # may carry something from step to step
-        row = chosen.packed([mesh], [0], [0], sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0]
+        row = chosen.pack([mesh], [0], [0], sea).submerge(
+            origin[None], turn.reshape(1, 9), float(time)
+        )[0]
     volume, _, _, _, wetted_area, waterplane_area = row.tolist()
     return Submersion(volume, row[clip.CENTROID], wetted_area, waterplane_area)
 
@@ -76,11 +82,15 @@ _LOCK = threading.Lock()  # a packed mesh has one set of results
 @functools.lru_cache(maxsize=16)
 def _packed(mesh: TriMesh, water: Water) -> Packed:
     """A mesh ready to be submerged again and again."""
-    return Exact().packed([mesh], [0], [0], water)
+    return Exact().pack([mesh], [0], [0], water)
 
 
 def wetted_surface(
-    mesh: TriMesh, position: NDArray[np.float64], rotation: NDArray[np.float64], water: Water, time: float
+    mesh: TriMesh,
+    position: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    water: Water,
+    time: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """What an eye would see wet: triangles (n, 3, 3) and pieces of the waterline (k, 2, 3) [m], world frame.
 

@@ -60,7 +60,7 @@ class Case:
     """Its picture."""
 
 
-def followed(
+def follow(
     model: mujoco.MjModel,
     water: Water,
     duration: float,
@@ -98,7 +98,9 @@ def followed(
 def crossings(times: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
     """When values pass zero, by straight lines."""
     i = np.flatnonzero(np.sign(values[1:]) * np.sign(values[:-1]) < 0)
-    crossed: NDArray[np.float64] = times[i] + (times[i + 1] - times[i]) * values[i] / (values[i] - values[i + 1])
+    crossed: NDArray[np.float64] = times[i] + (times[i + 1] - times[i]) * values[i] / (
+        values[i] - values[i + 1]
+    )
     return crossed
 
 
@@ -110,13 +112,21 @@ def period(times: NDArray[np.float64], values: NDArray[np.float64], count: int =
 
 def amplitude(times: NDArray[np.float64], values: NDArray[np.float64], omega: float) -> float:
     """Amplitude of what goes as cos(omega t), by least squares beside a mean and a trend."""
-    columns = np.column_stack([np.cos(omega * times), np.sin(omega * times), np.ones_like(times), times])
+    columns = np.column_stack(
+        [np.cos(omega * times), np.sin(omega * times), np.ones_like(times), times]
+    )
     a, b, *_ = np.linalg.lstsq(columns, values, rcond=None)[0]
     return math.hypot(a, b)
 
 
 def body(
-    geom: str, *, mass: float, inertia: Sequence[float], centre: str = "0 0 0", joint: str = "<freejoint/>", custom: str = ""
+    geom: str,
+    *,
+    mass: float,
+    inertia: Sequence[float],
+    centre: str = "0 0 0",
+    joint: str = "<freejoint/>",
+    custom: str = "",
 ) -> mujoco.MjModel:
     """A model of one body 'b' with geoms, at the origin."""
     return mujoco.MjModel.from_xml_string(f"""<mujoco>
@@ -127,4 +137,6 @@ def body(
 
 def numeric(quantity: str, values: Sequence[float]) -> str:
     """A numeric of MJCF that states it of body 'b'."""
-    return f'<numeric name="{quantity}:b" data="{" ".join(repr(float(value)) for value in values)}"/>'
+    return (
+        f'<numeric name="{quantity}:b" data="{" ".join(repr(float(value)) for value in values)}"/>'
+    )

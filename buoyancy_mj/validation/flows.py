@@ -10,28 +10,43 @@ from matplotlib.figure import Figure
 from scipy.special import h1vp
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
-from buoyancy_mj.hulls.geoms import displacing_hulls
-from buoyancy_mj.loads.added_mass import estimated as added_mass_of
+from buoyancy_mj.hulls.geoms import find_hulls
+from buoyancy_mj.loads.added_mass import estimate_added_mass as added_mass_of
 from buoyancy_mj.loads.drag import Drag
-from buoyancy_mj.loads.drag import estimated as damping_of
+from buoyancy_mj.loads.drag import resolve_damping as damping_of
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import RegularWave
-from buoyancy_mj.validation.case import Case, Row, amplitude, body, followed, numeric
+from buoyancy_mj.validation.case import Case, Row, amplitude, body, follow, numeric
 
 _CYLINDER = '<geom type="cylinder" size=".1 {half}"/>'
 WHITE: dict[str, tuple[str, int, float, float]] = {
     "cube, face on": ('<geom type="box" size=".1 .1 .1"/>', 0, 0.04, 1.07),
     "square plate across the flow": ('<geom type="box" size=".1 .1 .002"/>', 2, 0.04, 1.18),
     "disk across the flow": (_CYLINDER.format(half=0.002), 2, math.pi * 0.01, 1.17),
-    "cylinder along the flow, as long as wide": (_CYLINDER.format(half=0.1), 2, math.pi * 0.01, 0.90),
+    "cylinder along the flow, as long as wide": (
+        _CYLINDER.format(half=0.1),
+        2,
+        math.pi * 0.01,
+        0.90,
+    ),
     "cylinder along the flow, 4 times": (_CYLINDER.format(half=0.4), 2, math.pi * 0.01, 0.87),
     "cylinder across the flow, as long as wide": (_CYLINDER.format(half=0.1), 0, 0.04, 0.64),
     "cylinder across the flow, 2 times": (_CYLINDER.format(half=0.2), 0, 0.08, 0.68),
     "cylinder across the flow, 5 times": (_CYLINDER.format(half=0.5), 0, 0.2, 0.74),
     "cylinder across the flow, 10 times": (_CYLINDER.format(half=1.0), 0, 0.4, 0.82),
     "sphere, laminar": ('<geom type="sphere" size=".1"/>', 0, math.pi * 0.01, 0.47),
-    "ellipsoid along the flow, 2 times, laminar": ('<geom type="ellipsoid" size=".2 .1 .1"/>', 0, math.pi * 0.01, 0.27),
-    "ellipsoid along the flow, 4 times, laminar": ('<geom type="ellipsoid" size=".4 .1 .1"/>', 0, math.pi * 0.01, 0.25),
+    "ellipsoid along the flow, 2 times, laminar": (
+        '<geom type="ellipsoid" size=".2 .1 .1"/>',
+        0,
+        math.pi * 0.01,
+        0.27,
+    ),
+    "ellipsoid along the flow, 4 times, laminar": (
+        '<geom type="ellipsoid" size=".4 .1 .1"/>',
+        0,
+        math.pi * 0.01,
+        0.25,
+    ),
 }
 """Geom, axis of the flow, frontal area [m^2], measured drag coefficient; at Reynolds numbers from 1e4."""
 DNV: dict[str, tuple[str, int, float, float]] = {
@@ -65,7 +80,7 @@ def drag_coefficients() -> dict[str, float]:
     found = {}
     for name, (geom, axis, area, _) in WHITE.items():
         model = _of(geom)
-        quadratic = damping_of(Drag(), model, displacing_hulls(model), 1000.0).quadratic[0, axis]
+        quadratic = damping_of(Drag(), model, find_hulls(model), 1000.0).quadratic[0, axis]
         found[name] = float(quadratic / (0.5 * 1000.0 * area))
     return found
 
@@ -74,22 +89,27 @@ def drag_coefficients() -> dict[str, float]:
 def added_mass_coefficients() -> dict[str, float]:
     """The estimate's, for the bodies of `DNV`."""
     return {
-        name: float(added_mass_of(displacing_hulls(_of(geom)), 1000.0)[axis, axis] / (1000.0 * volume))
+        name: float(added_mass_of(find_hulls(_of(geom)), 1000.0)[axis, axis] / (1000.0 * volume))
         for name, (geom, axis, volume, _) in DNV.items()
     }
 
 
 def _white() -> Sequence[Row]:
-    return [Row(f"C_D, {name}", WHITE[name][3], ours, 0.2) for name, ours in drag_coefficients().items()]
+    return [
+        Row(f"C_D, {name}", WHITE[name][3], ours, 0.2) for name, ours in drag_coefficients().items()
+    ]
 
 
 def _dnv() -> Sequence[Row]:
-    return [Row(f"C_A, {name}", DNV[name][3], ours, 0.15) for name, ours in added_mass_coefficients().items()]
+    return [
+        Row(f"C_A, {name}", DNV[name][3], ours, 0.15)
+        for name, ours in added_mass_coefficients().items()
+    ]
 
 
 def _fall(model: mujoco.MjModel, *, drag: bool = True) -> float:
     """Terminal speed [m/s] downward."""
-    _, speeds = followed(model, Water(), 12.0, read=lambda data: float(data.qvel[2]), drag=drag)
+    _, speeds = follow(model, Water(), 12.0, read=lambda data: float(data.qvel[2]), drag=drag)
     return -float(speeds[-1])
 
 
@@ -108,8 +128,18 @@ def _terminal() -> Sequence[Row]:
     net = (10.0 - 1000.0 * 4 / 3 * math.pi * 2e-3) * 9.81
     long = math.sqrt(net / (0.5 * 1000.0 * 0.27 * math.pi * 0.01))
     return [
-        Row("sphere of 20 cm and 6 kg, C_D 0.47 [m/s]", sphere, _fall(_deep('<geom type="sphere" size=".1"/>', 6.0)), 0.1),
-        Row("ellipsoid of 40 x 20 cm and 10 kg, end on, C_D 0.27 [m/s]", long, _fall(_deep(along, 10.0)), 0.1),
+        Row(
+            "sphere of 20 cm and 6 kg, C_D 0.47 [m/s]",
+            sphere,
+            _fall(_deep('<geom type="sphere" size=".1"/>', 6.0)),
+            0.1,
+        ),
+        Row(
+            "ellipsoid of 40 x 20 cm and 10 kg, end on, C_D 0.27 [m/s]",
+            long,
+            _fall(_deep(along, 10.0)),
+            0.1,
+        ),
     ]
 
 
@@ -127,7 +157,9 @@ def _engine() -> Sequence[Row]:
         data = mujoco.MjData(theirs)
         while data.time < 12.0:
             mujoco.mj_step(theirs, data)
-        rows.append(Row(f"the engine's own fluid, {name} [m/s]", published, -float(data.qvel[2]), 1e-5))
+        rows.append(
+            Row(f"the engine's own fluid, {name} [m/s]", published, -float(data.qvel[2]), 1e-5)
+        )
         # its coefficients, stated: blunt 0.5 of the projected area, slender 0.25 of what the largest is larger
         shown, most = math.pi * a * b, math.pi * max(a * b, b * c, a * c)
         quadratic = 1000.0 * (0.5 * shown + 0.25 * (most - shown))
@@ -156,7 +188,9 @@ def _pile(stoutness: float) -> float:
     for data.time in times:
         mujoco.mj_forward(model, data)
         forces.append(buoyancy.evaluate(data).total.force[0])
-    return amplitude(times, np.array(forces), 2 * math.pi / wave.period) / (1000.0 * 9.81 * high * radius**2)
+    return amplitude(times, np.array(forces), 2 * math.pi / wave.period) / (
+        1000.0 * 9.81 * high * radius**2
+    )
 
 
 def _maccamy_fuchs() -> Sequence[Row]:
@@ -172,7 +206,9 @@ def _orbit(read: Callable[[mujoco.MjData], float], *, added_mass: str = "estimat
     """Amplitude [m] of a small neutral sphere, 1 m deep in a wave of 2 mm and 6 m."""
     radius, wave = 0.05, RegularWave(0.002, wavelength=6.0)
     model = body(
-        f'<geom type="sphere" size="{radius}"/>', mass=1000.0 * 4 / 3 * math.pi * radius**3, inertia=(1e-3, 1.1e-3, 1e-3)
+        f'<geom type="sphere" size="{radius}"/>',
+        mass=1000.0 * 4 / 3 * math.pi * radius**3,
+        inertia=(1e-3, 1.1e-3, 1e-3),
     )
     model.body_pos[1] = [0.0, 0.0, -1.0]
     model.qpos0[2] = -1.0
@@ -181,7 +217,7 @@ def _orbit(read: Callable[[mujoco.MjData], float], *, added_mass: str = "estimat
     def start(data: mujoco.MjData) -> None:
         data.qvel[:3] = velocity
 
-    times, values = followed(
+    times, values = follow(
         model,
         Water(waves=wave),
         wave.period,
@@ -197,8 +233,18 @@ def _orbit(read: Callable[[mujoco.MjData], float], *, added_mass: str = "estimat
 def _kelvin() -> Sequence[Row]:
     radius = 0.002 * math.exp(-2 * math.pi / 6.0)
     return [
-        Row("its orbit over the water's, along the wave", 1.0, _orbit(lambda data: float(data.qpos[0])) / radius, 0.02),
-        Row("its orbit over the water's, upright", 1.0, _orbit(lambda data: float(data.qpos[2])) / radius, 0.02),
+        Row(
+            "its orbit over the water's, along the wave",
+            1.0,
+            _orbit(lambda data: float(data.qpos[0])) / radius,
+            0.02,
+        ),
+        Row(
+            "its orbit over the water's, upright",
+            1.0,
+            _orbit(lambda data: float(data.qpos[2])) / radius,
+            0.02,
+        ),
     ]
 
 
@@ -215,17 +261,34 @@ def _floater(pressure: str, ratio: float) -> float:
         joint='<joint type="slide" axis="0 0 1"/>',
         custom=numeric("radiation_damping", [6.0, 0, 0]),
     )
-    times, heights = followed(
-        model, Water(waves=wave), 60.0 * own, read=lambda data: float(data.qpos[0]), pressure=pressure, added_mass="none"
+    times, heights = follow(
+        model,
+        Water(waves=wave),
+        60.0 * own,
+        read=lambda data: float(data.qpos[0]),
+        pressure=pressure,
+        added_mass="none",
     )
     late = times > 30.0 * own
     return amplitude(times[late], heights[late], 2 * math.pi / wave.period) / 0.005
 
 
 def _long_waves() -> Sequence[Row]:
-    rows = [Row("Archimedes' force, T = 10 T_n: 1 / (1 - k d)", 1.0101, _floater("archimedes", 10.0), 0.005)]
+    rows = [
+        Row(
+            "Archimedes' force, T = 10 T_n: 1 / (1 - k d)",
+            1.0101,
+            _floater("archimedes", 10.0),
+            0.005,
+        )
+    ]
     rows += [
-        Row(f"Froude-Krylov, T = {ratio:g} T_n: follows the surface", 1.0, _floater("froude-krylov", ratio), 0.01)
+        Row(
+            f"Froude-Krylov, T = {ratio:g} T_n: follows the surface",
+            1.0,
+            _floater("froude-krylov", ratio),
+            0.01,
+        )
         for ratio in (5.0, 10.0)
     ]
     return rows
@@ -234,13 +297,22 @@ def _long_waves() -> Sequence[Row]:
 def _draw_tables() -> Figure:
     figure = Figure(figsize=(9.0, 4.0), layout="constrained")
     for axes, table, found, label in zip(
-        figure.subplots(1, 2), (WHITE, DNV), (drag_coefficients(), added_mass_coefficients()), ("C_D", "C_A"), strict=True
+        figure.subplots(1, 2),
+        (WHITE, DNV),
+        (drag_coefficients(), added_mass_coefficients()),
+        ("C_D", "C_A"),
+        strict=True,
     ):
         published = [table[name][3] for name in found]
         axes.plot(published, list(found.values()), "o")
         top = 1.1 * max(*published, *found.values())
         axes.plot([0.0, top], [0.0, top], "k-", linewidth=1.0)
-        axes.set(xlabel=f"{label} published", ylabel=f"{label} estimated here", xlim=(0.0, top), ylim=(0.0, top))
+        axes.set(
+            xlabel=f"{label} published",
+            ylabel=f"{label} estimated here",
+            xlim=(0.0, top),
+            ylim=(0.0, top),
+        )
         axes.grid(alpha=0.3)
     return figure
 

@@ -10,7 +10,9 @@ from buoyancy_mj.errors import BuoyancyError, choices
 from buoyancy_mj.validation import flows, spheres, vehicles
 from buoyancy_mj.validation.case import Case, Row
 
-CASES: Mapping[str, Case] = {case.name: case for part in (spheres, vehicles, flows) for case in part.CASES}
+CASES: Mapping[str, Case] = {
+    case.name: case for part in (spheres, vehicles, flows) for case in part.CASES
+}
 """By name."""
 PICTURES = "validation"
 """Folder of the pictures, beside the page."""
@@ -37,7 +39,9 @@ def validate(
             (folder / PICTURES).mkdir(parents=True, exist_ok=True)
             for name, case in CASES.items():
                 if case.draw is not None:
-                    case.draw().savefig(folder / PICTURES / f"{name}.png", dpi=110, metadata={"Software": None})
+                    case.draw().savefig(
+                        folder / PICTURES / f"{name}.png", dpi=110, metadata={"Software": None}
+                    )
             (folder / "validation.md").write_text(page(found))
         except OSError as error:
             raise BuoyancyError(f"cannot write the validation to '{folder}': {error}") from error
@@ -48,7 +52,9 @@ def page(found: Mapping[str, Sequence[Row]]) -> str:
     """The page, in Markdown."""
     rows = [row for case in found.values() for row in case]
     passed = sum(row.passes for row in rows)
-    machine = f"{os.cpu_count()} cores, Python {platform.python_version()}, MuJoCo {version('mujoco')}"
+    machine = (
+        f"{os.cpu_count()} cores, Python {platform.python_version()}, MuJoCo {version('mujoco')}"
+    )
     parts = [_PAGE.format(count=len(rows), passed=passed, machine=machine)]
     for name, results in found.items():
         case = CASES[name]
@@ -72,7 +78,14 @@ def cells(row: Row) -> tuple[str, ...]:
         apart, allowed = f"{row.difference:+.3g}", f"{row.allowed:.3g}"
     else:
         apart, allowed = f"{100 * row.difference:+.2g} %", f"{100 * row.allowed:.2g} %"
-    return row.quantity, f"{row.published:.4g}", f"{row.ours:.4g}", apart, allowed, "holds" if row.passes else "**fails**"
+    return (
+        row.quantity,
+        f"{row.published:.4g}",
+        f"{row.ours:.4g}",
+        apart,
+        allowed,
+        "holds" if row.passes else "**fails**",
+    )
 
 
 _PAGE = """# Against the world

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import RegularWave
-from buoyancy_mj.validation.case import Case, Row, amplitude, crossings, followed
+from buoyancy_mj.validation.case import Case, Row, amplitude, crossings, follow
 
 TASK_10 = (
     "Wendt et al. 2019, *Ocean Energy Systems Wave Energy Modelling Task: Modelling, Verification and Validation of Wave "
@@ -38,7 +38,7 @@ def decay(height: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     def start(data: mujoco.MjData) -> None:
         data.qpos[2] = height
 
-    return followed(_sphere(), Water(), 20.0, read=lambda data: float(data.qpos[2]), start=start)
+    return follow(_sphere(), Water(), 20.0, read=lambda data: float(data.qpos[2]), start=start)
 
 
 @functools.cache
@@ -47,8 +47,12 @@ def response(pressure: str) -> tuple[float, ...]:
     found = []
     for seconds in PERIODS:
         wave = RegularWave(0.05, period=seconds)
-        times, heights = followed(
-            _sphere(0.02), Water(waves=wave), 24.0 * seconds, read=lambda data: float(data.qpos[2]), pressure=pressure
+        times, heights = follow(
+            _sphere(0.02),
+            Water(waves=wave),
+            24.0 * seconds,
+            read=lambda data: float(data.qpos[2]),
+            pressure=pressure,
         )
         late = times > 16.0 * seconds
         found.append(amplitude(times[late], heights[late], 2.0 * math.pi / seconds) / 0.05)
@@ -70,8 +74,18 @@ def _drop(height: float) -> Sequence[Row]:
         for i, published in enumerate(levels, 1)
     ]
     trough = int(heights.argmin())
-    rows.append(Row("first trough [m]", turns[0], float(heights[trough]), 0.15 * height, absolute=True))
-    rows.append(Row("first crest after it [m]", turns[1], float(heights[trough:].max()), 0.15 * height, absolute=True))
+    rows.append(
+        Row("first trough [m]", turns[0], float(heights[trough]), 0.15 * height, absolute=True)
+    )
+    rows.append(
+        Row(
+            "first crest after it [m]",
+            turns[1],
+            float(heights[trough:].max()),
+            0.15 * height,
+            absolute=True,
+        )
+    )
     return rows
 
 
@@ -82,15 +96,24 @@ def _coefficients() -> Sequence[Row]:
     added = model.numeric("added_mass:oes_sphere").data[2]
     made = model.numeric("radiation_damping:oes_sphere").data[0]
     return [
-        Row("added mass in heave, half wet, over 2/3 pi rho R^3", 0.4284, float(0.5 * added / unit), 2e-3),
-        Row("damping in heave over that and the frequency", 0.2484, float(made / unit / omega), 2e-3),
+        Row(
+            "added mass in heave, half wet, over 2/3 pi rho R^3",
+            0.4284,
+            float(0.5 * added / unit),
+            2e-3,
+        ),
+        Row(
+            "damping in heave over that and the frequency", 0.2484, float(made / unit / omega), 2e-3
+        ),
     ]
 
 
 def _response() -> Sequence[Row]:
     return [
         Row(f"heave over amplitude at {seconds:g} s", published, ours, 0.1)
-        for seconds, published, ours in zip(PERIODS, LINEAR_RESPONSE, response("froude-krylov"), strict=True)
+        for seconds, published, ours in zip(
+            PERIODS, LINEAR_RESPONSE, response("froude-krylov"), strict=True
+        )
     ]
 
 
@@ -102,7 +125,9 @@ def _draw_decay() -> Figure:
         axes.plot(levels, np.zeros(len(levels)), "kx", label=whose)
         axes.axhline(turns[0], color="0.5", linestyle=":", label="their first trough and crest")
         axes.axhline(turns[1], color="0.5", linestyle=":")
-        axes.set(xlabel="time [s]", ylabel="heave [m]", xlim=(0.0, 12.0), title=f"let go {height:g} m up")
+        axes.set(
+            xlabel="time [s]", ylabel="heave [m]", xlim=(0.0, 12.0), title=f"let go {height:g} m up"
+        )
         axes.legend(fontsize=7)
         axes.grid(alpha=0.3)
     return figure

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from buoyancy_mj.loads.added_mass import ellipsoid
+from buoyancy_mj.loads.added_mass import ellipsoid_added_mass
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.hydrostatics import hydrostatics
-from buoyancy_mj.validation.case import Case, Row, body, followed, numeric, period
+from buoyancy_mj.validation.case import Case, Row, body, follow, numeric, period
 
 VON_BENZON = (
     "von Benzon et al. 2022, *An Open-Source Benchmark Simulator: Control of a BlueROV2 Underwater Robot*, J. Mar. Sci. "
@@ -27,26 +27,46 @@ def _bluerov2(density: float, *, push: float = 0.0, dof: int = 2, duration: floa
         for key in spec.keys:
             spec.delete(key)
         spec.delete(spec.joints[0])
-        spec.body("bluerov2_heavy").add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0])
+        spec.body("bluerov2_heavy").add_joint(
+            type=mujoco.mjtJoint.mjJNT_SLIDE, axis=[1.0, 0.0, 0.0]
+        )
     model = spec.compile()
     model.opt.timestep, model.opt.integrator = 0.01, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
 
     def start(data: mujoco.MjData) -> None:
         data.xfrc_applied[1, dof] = push
 
-    _, speeds = followed(model, Water(density=density), duration, read=lambda data: float(data.qvel[dof]), start=start)
+    _, speeds = follow(
+        model,
+        Water(density=density),
+        duration,
+        read=lambda data: float(data.qvel[dof]),
+        start=start,
+    )
     return float(speeds[-1])
 
 
-def _swing(model: mujoco.MjModel, dof: int, *, angle: float = 0.02, depth: float = -20.0, duration: float = 60.0) -> float:
+def _swing(
+    model: mujoco.MjModel,
+    dof: int,
+    *,
+    angle: float = 0.02,
+    depth: float = -20.0,
+    duration: float = 60.0,
+) -> float:
     """Period [s] of a free body turned a little about one of its axes, without drag."""
 
     def start(data: mujoco.MjData) -> None:
         data.qpos[2] = depth
         data.qpos[3], data.qpos[3 + dof] = math.cos(0.5 * angle), math.sin(0.5 * angle)
 
-    times, angles = followed(
-        model, Water(density=1026.0), duration, read=lambda data: float(data.qpos[3 + dof]), start=start, drag=False
+    times, angles = follow(
+        model,
+        Water(density=1026.0),
+        duration,
+        read=lambda data: float(data.qpos[3 + dof]),
+        start=start,
+        drag=False,
     )
     return period(times, angles)
 
@@ -57,12 +77,19 @@ def _speeds() -> Sequence[Row]:
         Row("rises in sea water [m/s]", 0.0534, _bluerov2(1025.0), 0.01),
     ]
     rows += [
-        Row(f"surge under {push:g} N [m/s]", speed, _bluerov2(1000.0, push=push, dof=0, duration=15.0), 0.01)
+        Row(
+            f"surge under {push:g} N [m/s]",
+            speed,
+            _bluerov2(1000.0, push=push, dof=0, duration=15.0),
+            0.01,
+        )
         for push, speed in ((10.0, 0.222), (40.0, 0.486), (100.0, 0.795))
     ]
     model = catalog.read_spec(catalog.models()["bluerov2_heavy"]).compile()
     # undamped, each motion by itself
-    found = hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0]).natural_periods([6.36, 7.12, 18.68, 0.189, 0.135, 0.222])
+    found = hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0]).natural_periods(
+        [6.36, 7.12, 18.68, 0.189, 0.135, 0.222]
+    )
     rows += [
         Row("period of roll [s]", 3.672, float(found[1]), 0.01),
         Row("period of pitch [s]", 3.311, float(found[2]), 0.01),
@@ -74,15 +101,23 @@ def _remus() -> Sequence[Row]:
     # a prolate spheroid, its centre of gravity 2 cm under its middle
     radii = np.array([0.8, 0.095, 0.095])
     mass, moments = 31.029, (0.1120, 4.028, 4.028)
-    added = ellipsoid(radii, 1026.0)
+    added = ellipsoid_added_mass(radii, 1026.0)
     # the simulator's rule for roll, which a smooth spheroid would not have
     added[3] = 0.3 * moments[0]
     volume = mass / 1026.0
     scale = (volume / (4.0 / 3.0 * math.pi * float(radii.prod()))) ** (1.0 / 3.0)
     size = " ".join(repr(float(radius * scale)) for radius in radii)
     custom = numeric("added_mass", added.tolist())
-    model = body(f'<geom type="ellipsoid" size="{size}"/>', mass=mass, inertia=moments, centre="0 0 -.02", custom=custom)
-    dry = body(f'<geom type="ellipsoid" size="{size}"/>', mass=mass, inertia=moments, centre="0 0 -.02")
+    model = body(
+        f'<geom type="ellipsoid" size="{size}"/>',
+        mass=mass,
+        inertia=moments,
+        centre="0 0 -.02",
+        custom=custom,
+    )
+    dry = body(
+        f'<geom type="ellipsoid" size="{size}"/>', mass=mass, inertia=moments, centre="0 0 -.02"
+    )
     return [
         Row("period of roll [s]", 0.9917, _swing(model, 1, duration=5.0), 0.02),
         Row("period of pitch [s]", 6.953, _swing(model, 2), 0.02),
@@ -128,24 +163,48 @@ def _otter() -> Sequence[Row]:
     ]
     for name, joint, inertia, published, place in (
         ("heave", '<joint type="slide" axis="0 0 1"/>', whole[0], 0.8407, 0.01),
-        ("roll", f'<joint type="hinge" axis="1 0 0" pos="0 0 {gravity_above - draft!r}"/>', whole[1], 1.0079, 0.02),
-        ("pitch", f'<joint type="hinge" axis="0 1 0" pos="0 0 {gravity_above - draft!r}"/>', whole[2], 0.8575, 0.02),
+        (
+            "roll",
+            f'<joint type="hinge" axis="1 0 0" pos="0 0 {gravity_above - draft!r}"/>',
+            whole[1],
+            1.0079,
+            0.02,
+        ),
+        (
+            "pitch",
+            f'<joint type="hinge" axis="0 1 0" pos="0 0 {gravity_above - draft!r}"/>',
+            whole[2],
+            0.8575,
+            0.02,
+        ),
     ):
         moments = (whole[1], whole[2], max(whole[1], abs(whole[2] - whole[1]) + 1.0))
         # of heave alone the added mass is told apart; it scales with what is wet of the floats
         beyond = (inertia - mass) * 0.4 / draft if name == "heave" else 0.0
         custom = numeric("added_mass", [0, 0, beyond, 0, 0, 0])
         single = body(
-            floats, mass=mass, inertia=moments, centre=f"0 0 {gravity_above - draft!r}", joint=joint, custom=custom
+            floats,
+            mass=mass,
+            inertia=moments,
+            centre=f"0 0 {gravity_above - draft!r}",
+            joint=joint,
+            custom=custom,
         )
 
         def start(data: mujoco.MjData, value: float = place) -> None:
             data.qpos[0] = value
 
-        times, values = followed(
-            single, Water(density=1025.0), 6.0, read=lambda data: float(data.qpos[0]), start=start, drag=False
+        times, values = follow(
+            single,
+            Water(density=1025.0),
+            6.0,
+            read=lambda data: float(data.qpos[0]),
+            start=start,
+            drag=False,
         )
-        rows.append(Row(f"period of {name} [s]", published, period(times, values - values.mean()), 0.02))
+        rows.append(
+            Row(f"period of {name} [s]", published, period(times, values - values.mean()), 0.02)
+        )
     return rows
 
 

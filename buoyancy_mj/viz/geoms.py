@@ -9,7 +9,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.hulls import geoms
-from buoyancy_mj.meshes.mesh import refined
+from buoyancy_mj.meshes.mesh import refine
 
 SHOWN_GROUPS = 3
 """Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
@@ -20,7 +20,7 @@ FINENESS = 12.0
 
 
 @dataclasses.dataclass(frozen=True)
-class Drawn:
+class VisibleGeom:
     """A geom as it is drawn."""
 
     geom: int
@@ -46,29 +46,35 @@ class Drawn:
         return self.body != 0
 
 
-def drawn_geoms(model: mujoco.MjModel) -> Iterator[Drawn]:
+def find_visible_geoms(model: mujoco.MjModel) -> Iterator[VisibleGeom]:
     """Every geom that MuJoCo's viewer would show at first, or all of them if it would show none."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN_GROUPS] or list(range(model.ngeom))
+    shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN_GROUPS] or list(
+        range(model.ngeom)
+    )
     for g in shown:
         material = model.geom_matid[g]
         rgba = model.geom_rgba[g]
         if material >= 0 and np.array_equal(rgba, DEFAULT_RGBA):
             rgba = model.mat_rgba[material]
         is_plane = model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE
-        arrays = _plane(model.geom_size[g]) if is_plane else geoms.geom_mesh(model, g)
+        arrays = _plane(model.geom_size[g]) if is_plane else geoms.read_geom_mesh(model, g)
         if arrays is None or rgba[3] == 0.0:
             continue
         vertices, faces = arrays
         body = int(model.geom_bodyid[g])
         if model.body_weldid[body] or model.body_mocapid[body] >= 0:
-            vertices, faces = refined(vertices, faces, float(np.ptp(vertices, axis=0).max()) / FINENESS)
+            vertices, faces = refine(
+                vertices, faces, float(np.ptp(vertices, axis=0).max()) / FINENESS
+            )
         else:
             body = 0
-        smooth = trimesh.graph.smooth_shade(trimesh.Trimesh(vertices, faces, process=False), angle=0.6)
+        smooth = trimesh.graph.smooth_shade(
+            trimesh.Trimesh(vertices, faces, process=False), angle=0.6
+        )
         world_from_body = data.xmat[body].reshape(3, 3)
-        yield Drawn(
+        yield VisibleGeom(
             geom=g,
             body=body,
             colour=(255.0 * rgba).astype(np.uint8),

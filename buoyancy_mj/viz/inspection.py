@@ -12,14 +12,20 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.inspection import report
 from buoyancy_mj.inspection.inspection import Floating, Inspection
-from buoyancy_mj.meshes.mesh import TriMesh, refined, solid_of
+from buoyancy_mj.meshes.mesh import TriMesh, refine, to_manifold
 from buoyancy_mj.statics.curves import waterlines
 from buoyancy_mj.statics.vessel import Vessel
 from buoyancy_mj.viz.rrd import RrdFile
 
 DRY, WET, FLOODED = (225, 190, 90), (60, 120, 210), (170, 170, 170)
 WATERPLANE, WATERLINE, SEA = (120, 200, 255, 110), (255, 255, 255), (70, 150, 215, 30)
-POINTS = {"G": (230, 60, 60), "B": (60, 90, 240), "F": (255, 255, 255), "Mt": (60, 190, 90), "Ml": (150, 220, 60)}
+POINTS = {
+    "G": (230, 60, 60),
+    "B": (60, 90, 240),
+    "F": (255, 255, 255),
+    "Mt": (60, 190, 90),
+    "Ml": (150, 220, 60),
+}
 """Centre of gravity, of buoyancy and of flotation, transverse and longitudinal metacentre."""
 TRANSLUCENT = 110
 """Alpha of hulls."""
@@ -27,7 +33,7 @@ FINENESS = 24.0
 """Size of a hull over the longest edge with which it is drawn."""
 
 
-def recorded(found: Inspection, path: Path) -> Path:
+def record_inspection(found: Inspection, path: Path) -> Path:
     """Write an inspection as a recording; where it lies.
 
     Raises:
@@ -38,7 +44,11 @@ def recorded(found: Inspection, path: Path) -> Path:
     file.follow(stream)
     stream.send_blueprint(_blueprint(found))
     stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-    stream.log("report", rr.TextDocument(report.markdown(found), media_type="text/markdown"), static=True)
+    stream.log(
+        "report",
+        rr.TextDocument(report.to_markdown(found), media_type="text/markdown"),
+        static=True,
+    )
     for floating in found.floating:
         _log(stream, f"world/{rr.escape_entity_path_part(floating.total.body)}", floating)
     file.write()
@@ -57,14 +67,18 @@ def _blueprint(found: Inspection) -> rrb.Blueprint:
         background=rrb.Background(color=[24, 30, 40]),
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(
-            position=look_at + size * np.array([-0.6, -1.3, 0.5]), look_target=look_at, eye_up=[0, 0, 1]
+            position=look_at + size * np.array([-0.6, -1.3, 0.5]),
+            look_target=look_at,
+            eye_up=[0, 0, 1],
         ),
     )
     beside: list[Any] = [rrb.TextDocumentView(origin="report", name="report")]
     if any(floating.righting is not None for floating in found.floating):
         beside.append(rrb.TimeSeriesView(origin="righting", name="GZ [m] over heel [degrees]"))
     return rrb.Blueprint(
-        rrb.Horizontal(view, rrb.Vertical(*beside, row_shares=[3, 2][: len(beside)]), column_shares=[3, 2]),
+        rrb.Horizontal(
+            view, rrb.Vertical(*beside, row_shares=[3, 2][: len(beside)]), column_shares=[3, 2]
+        ),
         rrb.TimePanel(state="hidden"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -85,13 +99,22 @@ def _log(stream: rr.RecordingStream, entity: str, floating: Floating) -> None:
         )
     centre = np.array([*vessel.position[:2], level])
     half = 0.9 * size
-    corners = centre + half * np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
+    corners = centre + half * np.array(
+        [[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]]
+    )
     sea = rr.Mesh3D(
-        vertex_positions=corners, triangle_indices=[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]], albedo_factor=SEA
+        vertex_positions=corners,
+        triangle_indices=[[0, 1, 2], [0, 2, 3], [0, 2, 1], [0, 3, 2]],
+        albedo_factor=SEA,
     )
     stream.log(f"{entity}/sea", sea, static=True)
     if floating.rest is None:
-        _log_points(stream, entity, {"G": vessel.position, "B": vessel.position + vessel.rotation @ vessel.centroid}, size)
+        _log_points(
+            stream,
+            entity,
+            {"G": vessel.position, "B": vessel.position + vessel.rotation @ vessel.centroid},
+            size,
+        )
         return
     at = floating.rest.hydrostatics
     _log_waterplane(stream, entity, vessel, at.draft, size)
@@ -101,7 +124,9 @@ def _log(stream: rr.RecordingStream, entity: str, floating: Floating) -> None:
         # metacentres stand over the centre of buoyancy; those far above the vessel would dwarf it
         rises = {"Mt": at.BMt, "Ml": at.BMl}
         points |= {
-            name: at.centre_of_buoyancy + np.array([0.0, 0.0, rise]) for name, rise in rises.items() if rise < 2.0 * size
+            name: at.centre_of_buoyancy + np.array([0.0, 0.0, rise])
+            for name, rise in rises.items()
+            if rise < 2.0 * size
         }
     _log_points(stream, entity, points, size)
     arm = floating.righting
@@ -109,14 +134,18 @@ def _log(stream: rr.RecordingStream, entity: str, floating: Floating) -> None:
         name = f"righting/{rr.escape_entity_path_part(floating.total.body)}"
         stream.send_columns(
             name,
-            indexes=[rr.TimeColumn("heel [degrees]", sequence=np.round(np.degrees(arm.heel)).astype(np.int64))],
+            indexes=[
+                rr.TimeColumn(
+                    "heel [degrees]", sequence=np.round(np.degrees(arm.heel)).astype(np.int64)
+                )
+            ],
             columns=rr.Scalars.columns(scalars=arm.gz),
         )
 
 
 def _hull(mesh: TriMesh, level: float, size: float, wet: tuple[int, int, int]) -> rr.Mesh3D:
     """A hull, coloured by what is under water."""
-    vertices, faces = refined(mesh.vertices, mesh.faces, size / FINENESS)
+    vertices, faces = refine(mesh.vertices, mesh.faces, size / FINENESS)
     smooth = trimesh.graph.smooth_shade(trimesh.Trimesh(vertices, faces, process=False), angle=0.6)
     under = np.asarray(smooth.vertices)[:, 2] < level
     return rr.Mesh3D(
@@ -129,25 +158,37 @@ def _hull(mesh: TriMesh, level: float, size: float, wet: tuple[int, int, int]) -
     )
 
 
-def _log_waterplane(stream: rr.RecordingStream, entity: str, vessel: Vessel, draft: float, size: float) -> None:
+def _log_waterplane(
+    stream: rr.RecordingStream, entity: str, vessel: Vessel, draft: float, size: float
+) -> None:
     """The waterline, and what it encloses."""
     lines = waterlines(vessel, vessel.rotation, draft)
     level = vessel.water.level
-    segments = np.concatenate([lines + vessel.position[:2], np.full((*lines.shape[:2], 1), level)], axis=-1)
-    stream.log(f"{entity}/waterline", rr.LineStrips3D(segments, colors=WATERLINE, radii=0.003 * size), static=True)
-    triangles = [_cut(mesh.transformed(vessel.rotation, vessel.position), level) for mesh in vessel.meshes]
+    segments = np.concatenate(
+        [lines + vessel.position[:2], np.full((*lines.shape[:2], 1), level)], axis=-1
+    )
+    stream.log(
+        f"{entity}/waterline",
+        rr.LineStrips3D(segments, colors=WATERLINE, radii=0.003 * size),
+        static=True,
+    )
+    triangles = [
+        _cut(mesh.transformed(vessel.rotation, vessel.position), level) for mesh in vessel.meshes
+    ]
     corners = np.concatenate(triangles)
     if len(corners):
         index = np.arange(len(corners)).reshape(-1, 3)
         plane = rr.Mesh3D(
-            vertex_positions=corners, triangle_indices=np.vstack([index, index[:, ::-1]]), albedo_factor=WATERPLANE
+            vertex_positions=corners,
+            triangle_indices=np.vstack([index, index[:, ::-1]]),
+            albedo_factor=WATERPLANE,
         )
         stream.log(f"{entity}/waterplane", plane, static=True)
 
 
 def _cut(mesh: TriMesh, level: float) -> NDArray[np.float64]:
     """Corners (3 n, 3) [m] of triangles that fill a cut; none where the mesh is no manifold."""
-    solid = solid_of(*mesh.compact)
+    solid = to_manifold(*mesh.compact)
     polygons = [] if solid is None else solid.slice(level).to_polygons()
     if not polygons:
         return np.empty((0, 3))
@@ -155,14 +196,23 @@ def _cut(mesh: TriMesh, level: float) -> NDArray[np.float64]:
     return np.column_stack([flat, np.full(len(flat), level)])
 
 
-def _log_points(stream: rr.RecordingStream, entity: str, points: dict[str, NDArray[np.float64]], size: float) -> None:
+def _log_points(
+    stream: rr.RecordingStream, entity: str, points: dict[str, NDArray[np.float64]], size: float
+) -> None:
     names = list(points)
     stream.log(
         f"{entity}/centres",
         rr.Points3D(
-            [points[name] for name in names], colors=[POINTS[name] for name in names], labels=names, radii=0.012 * size
+            [points[name] for name in names],
+            colors=[POINTS[name] for name in names],
+            labels=names,
+            radii=0.012 * size,
         ),
         static=True,
     )
     ends = [points["G"], points["B"]]
-    stream.log(f"{entity}/centres/BG", rr.LineStrips3D([ends], colors=(200, 200, 200), radii=0.003 * size), static=True)
+    stream.log(
+        f"{entity}/centres/BG",
+        rr.LineStrips3D([ends], colors=(200, 200, 200), radii=0.003 * size),
+        static=True,
+    )

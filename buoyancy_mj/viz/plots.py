@@ -71,7 +71,10 @@ def values(frame: Frame, weight: float) -> dict[Line, float]:
         ("force", "weight"): weight,
         ("volume", "total"): 1000.0 * float(loads.total.volume),
     }
-    named |= {("force", cause): float(np.linalg.norm(rows[:, :3].sum(axis=0))) for cause, rows in loads.by_cause.items()}
+    named |= {
+        ("force", cause): float(np.linalg.norm(rows[:, :3].sum(axis=0)))
+        for cause, rows in loads.by_cause.items()
+    }
     named |= {
         ("volume", "hulls", name): 1000.0 * float(volume)
         for name, volume in zip(loads.names, loads.hull.volume, strict=True)
@@ -81,10 +84,15 @@ def values(frame: Frame, weight: float) -> dict[Line, float]:
 
 def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesLines]:
     """How each line is drawn."""
-    colours: dict[Line, Colour] = {("volume", "hulls", name): _hue(i) for i, name in enumerate(hulls)}
+    colours: dict[Line, Colour] = {
+        ("volume", "hulls", name): _hue(i) for i, name in enumerate(hulls)
+    }
     colours |= {("force", cause): COLOURS.get(cause, NEUTRAL) for cause in ("weight", *causes)}
     colours |= _LINES
-    return {line: rr.SeriesLines(colors=[colour], names=[line[-1]], widths=[1.5]) for line, colour in colours.items()}
+    return {
+        line: rr.SeriesLines(colors=[colour], names=[line[-1]], widths=[1.5])
+        for line, colour in colours.items()
+    }
 
 
 def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blueprint:
@@ -95,7 +103,9 @@ def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blue
         background=rrb.Background(color=[24, 30, 40]),
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(
-            position=look_at + size * np.array([-0.95, -1.35, 0.6]), look_target=look_at, eye_up=[0, 0, 1]
+            position=look_at + size * np.array([-0.95, -1.35, 0.6]),
+            look_target=look_at,
+            eye_up=[0, 0, 1],
         ),
     )
     plots = [
@@ -103,15 +113,20 @@ def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blue
             origin="plots",
             contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
             name=title,
-            plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible="/plots/volume/**" not in contents),
+            plot_legend=rrb.PlotLegend(
+                corner=rrb.Corner2D.RightTop, visible="/plots/volume/**" not in contents
+            ),
         )
         for title, contents in PLOTS.items()
     ]
     texts = rrb.Tabs(
-        rrb.TextDocumentView(origin="summary", name="summary"), rrb.TextDocumentView(origin="scene", name="scene")
+        rrb.TextDocumentView(origin="summary", name="summary"),
+        rrb.TextDocumentView(origin="scene", name="scene"),
     )
     return rrb.Blueprint(
-        rrb.Horizontal(rrb.Vertical(view, texts, row_shares=[4, 1]), rrb.Vertical(*plots), column_shares=[3, 2]),
+        rrb.Horizontal(
+            rrb.Vertical(view, texts, row_shares=[4, 1]), rrb.Vertical(*plots), column_shares=[3, 2]
+        ),
         rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
         rrb.BlueprintPanel(state="collapsed"),
         rrb.SelectionPanel(state="collapsed"),
@@ -120,5 +135,7 @@ def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blue
 
 def _hue(i: int) -> Colour:
     """Colours far apart for neighbours: steps of the golden ratio around the circle of hues."""
-    red, green, blue, _ = trimesh.visual.color.hsv_to_rgba(np.array([[0.61803 * i % 1.0, 0.5, 0.9]]))[0].tolist()
+    red, green, blue, _ = trimesh.visual.color.hsv_to_rgba(
+        np.array([[0.61803 * i % 1.0, 0.5, 0.9]])
+    )[0].tolist()
     return red, green, blue

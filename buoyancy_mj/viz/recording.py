@@ -18,7 +18,7 @@ from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.submersion.submerge import wetted_surface
 from buoyancy_mj.viz import plots
-from buoyancy_mj.viz.geoms import Drawn, drawn_geoms
+from buoyancy_mj.viz.geoms import VisibleGeom, find_visible_geoms
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.viz.rrd import RrdFile
 
@@ -51,11 +51,16 @@ class Recording:
         RecordingError: the file cannot be written, or no viewer could be started.
     """
 
-    def __init__(self, simulation: Simulation, path: Path | None = None, *, live: bool = False) -> None:
+    def __init__(
+        self, simulation: Simulation, path: Path | None = None, *, live: bool = False
+    ) -> None:
         self.simulation = simulation
         self._file = RrdFile(path) if path is not None else None
         identity = str(uuid.uuid4())
-        self._streams = [rr.RecordingStream("buoyancy_mj", recording_id=identity) for _ in range((path is not None) + live)]
+        self._streams = [
+            rr.RecordingStream("buoyancy_mj", recording_id=identity)
+            for _ in range((path is not None) + live)
+        ]
         if self._file is not None:
             self._file.follow(self._streams[0])
         if live:
@@ -68,8 +73,10 @@ class Recording:
         self._scalars: dict[plots.Line, list[float]] = {}
         self._times: list[float] = []
         self._surface_centre: NDArray[np.float64] | None = None
-        self._size = 2.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls)
-        self._drawn = list(drawn_geoms(simulation.model))
+        self._size = 2.0 * max(
+            float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls
+        )
+        self._drawn = list(find_visible_geoms(simulation.model))
         self._wet: dict[int, NDArray[np.bool_]] = {}
         self._bodies = sorted({shape.body for shape in self._drawn if shape.moves})
         self._log_static()
@@ -110,13 +117,19 @@ class Recording:
             RecordingError: the last data could not be written.
         """
         if summary is not None:
-            self._log("summary", rr.TextDocument(_summary_text(summary), media_type="text/markdown"), static=True)
+            self._log(
+                "summary",
+                rr.TextDocument(_summary_text(summary), media_type="text/markdown"),
+                static=True,
+            )
         self._send_scalars()
         try:
             for stream in self._streams:
                 stream.flush(timeout_sec=60.0)
         except RuntimeError as error:
-            warnings.warn(f"the live viewer did not take everything: {error}", BuoyancyWarning, stacklevel=2)
+            warnings.warn(
+                f"the live viewer did not take everything: {error}", BuoyancyWarning, stacklevel=2
+            )
         if self._file is None:
             return None
         self._file.write()
@@ -138,12 +151,24 @@ class Recording:
         for stream in self._streams:
             stream.send_blueprint(plots.blueprint(scene.title, look_at, self._size))
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        self._log("scene", rr.TextDocument(f"```toml\n{scene.text}\n```", media_type="text/markdown"), static=True)
+        self._log(
+            "scene",
+            rr.TextDocument(f"```toml\n{scene.text}\n```", media_type="text/markdown"),
+            static=True,
+        )
         for shape in self._drawn:
             entity = self._entity(shape)
-            mesh = rr.Mesh3D(vertex_positions=shape.vertices, triangle_indices=shape.faces, vertex_normals=shape.normals)
+            mesh = rr.Mesh3D(
+                vertex_positions=shape.vertices,
+                triangle_indices=shape.faces,
+                vertex_normals=shape.normals,
+            )
             self._log(entity, mesh, static=True)
-            self._log(entity, rr.Transform3D(translation=shape.position, mat3x3=shape.rotation), static=True)
+            self._log(
+                entity,
+                rr.Transform3D(translation=shape.position, mat3x3=shape.rotation),
+                static=True,
+            )
             if not shape.moves:
                 self._log(entity, rr.Mesh3D.from_fields(albedo_factor=shape.colour), static=True)
         hulls = [hull.name for hull in self.simulation.buoyancy.hulls]
@@ -163,13 +188,20 @@ class Recording:
             )
         self._log_wetness(frame)
         lines = [
-            wetted_surface(hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time)[1]
-            for hull, waterplane in zip(self.simulation.buoyancy.hulls, frame.loads.waterplane_area, strict=True)
+            wetted_surface(
+                hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time
+            )[1]
+            for hull, waterplane in zip(
+                self.simulation.buoyancy.hulls, frame.loads.waterplane_area, strict=True
+            )
             # NaN from a method that does not know it
             if waterplane != 0.0
         ]
         strips = np.concatenate([np.zeros((0, 2, 3)), *lines])
-        self._log("world/waterline", rr.LineStrips3D(strips, colors=[WATERLINE], radii=[0.003 * self._size]))
+        self._log(
+            "world/waterline",
+            rr.LineStrips3D(strips, colors=[WATERLINE], radii=[0.003 * self._size]),
+        )
 
     def _log_wetness(self, frame: Frame) -> None:
         """Colours of the vertices that moved through the surface since the last frame."""
@@ -178,7 +210,9 @@ class Recording:
         hulls, loads = self.simulation.buoyancy.hulls, frame.loads
         uncut = {
             hull.geom: bool(volume > 0.0)
-            for hull, volume, waterplane in zip(hulls, loads.hull.volume, loads.waterplane_area, strict=True)
+            for hull, volume, waterplane in zip(
+                hulls, loads.hull.volume, loads.waterplane_area, strict=True
+            )
             if waterplane == 0.0
         }
         for shape in self._drawn:
@@ -187,13 +221,19 @@ class Recording:
             if shape.geom in uncut:
                 wet = np.full(len(shape.vertices), uncut[shape.geom])
             else:
-                points = shape.vertices @ data.geom_xmat[shape.geom].reshape(3, 3).T + data.geom_xpos[shape.geom]
+                points = (
+                    shape.vertices @ data.geom_xmat[shape.geom].reshape(3, 3).T
+                    + data.geom_xpos[shape.geom]
+                )
                 wet = water.depth(points, frame.time) > 0.0
             if shape.geom in self._wet and np.array_equal(wet, self._wet[shape.geom]):
                 continue
             self._wet[shape.geom] = wet
             dyed = (0.45 * shape.colour + 0.55 * np.append(WET, shape.colour[3])).astype(np.uint8)
-            self._log(self._entity(shape), rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour)))
+            self._log(
+                self._entity(shape),
+                rr.Mesh3D.from_fields(vertex_colors=np.where(wet[:, None], dyed, shape.colour)),
+            )
 
     def _log_water(self, frame: Frame) -> None:
         """The surface around the vehicle; it moves in whole cells, and still water only when it has to."""
@@ -201,13 +241,23 @@ class Recording:
         width = SURFACE_WIDTH * self._size
         cell = width / SURFACE_CELLS
         centre = np.round(frame.centre_of_mass[:2] / (4.0 * cell)) * 4.0 * cell
-        if not water.waves and self._surface_centre is not None and np.array_equal(centre, self._surface_centre):
+        if (
+            not water.waves
+            and self._surface_centre is not None
+            and np.array_equal(centre, self._surface_centre)
+        ):
             return
         if self._surface_centre is None:
-            corner = np.arange(SURFACE_CELLS)[:, None] * (SURFACE_CELLS + 1) + np.arange(SURFACE_CELLS)
+            corner = np.arange(SURFACE_CELLS)[:, None] * (SURFACE_CELLS + 1) + np.arange(
+                SURFACE_CELLS
+            )
             a, b = corner.ravel(), corner.ravel() + SURFACE_CELLS + 1
             faces = np.vstack([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
-            self._log("world/water", rr.Mesh3D.from_fields(triangle_indices=faces, albedo_factor=WATER), static=True)
+            self._log(
+                "world/water",
+                rr.Mesh3D.from_fields(triangle_indices=faces, albedo_factor=WATER),
+                static=True,
+            )
         self._surface_centre = centre
         along = (np.arange(SURFACE_CELLS + 1) / SURFACE_CELLS - 0.5) * width
         x, y = np.meshgrid(centre[0] + along, centre[1] + along, indexing="ij")
@@ -215,23 +265,34 @@ class Recording:
         slope_x, slope_y = np.gradient(z, cell)
         normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1).reshape(-1, 3)
         positions = np.stack([x, y, z], axis=-1).reshape(-1, 3)
-        self._log("world/water", rr.Mesh3D.from_fields(vertex_positions=positions, vertex_normals=normals))
+        self._log(
+            "world/water", rr.Mesh3D.from_fields(vertex_positions=positions, vertex_normals=normals)
+        )
         lattice = positions.reshape(SURFACE_CELLS + 1, SURFACE_CELLS + 1, 3)[::2, ::2]
         lines = np.concatenate([lattice, lattice.swapaxes(0, 1)])
-        self._log("world/water/grid", rr.LineStrips3D(lines, colors=[GRID], radii=[0.0015 * self._size]))
+        self._log(
+            "world/water/grid", rr.LineStrips3D(lines, colors=[GRID], radii=[0.0015 * self._size])
+        )
 
     def _log_forces(self, frame: Frame) -> None:
         """Centres of gravity and buoyancy, and an arrow for each force, as long as half the vehicle for its weight."""
         loads, centre = frame.loads, frame.centre_of_mass
         weight = self.simulation.weight
-        self._log("world/centres/gravity", rr.Points3D([centre], colors=[COLOURS["weight"]], radii=[0.02 * self._size]))
+        self._log(
+            "world/centres/gravity",
+            rr.Points3D([centre], colors=[COLOURS["weight"]], radii=[0.02 * self._size]),
+        )
         wet = loads.hull.volume > 0.0
         hulls = loads.hull.centroid[wet]
         self._log(
-            "world/centres/buoyancy_of_hulls", rr.Points3D(hulls, colors=[COLOURS["buoyancy"]], radii=[0.01 * self._size])
+            "world/centres/buoyancy_of_hulls",
+            rr.Points3D(hulls, colors=[COLOURS["buoyancy"]], radii=[0.01 * self._size]),
         )
         total = loads.total.centroid[None] if wet.any() else np.zeros((0, 3))
-        self._log("world/centres/buoyancy", rr.Points3D(total, colors=[COLOURS["buoyancy"]], radii=[0.02 * self._size]))
+        self._log(
+            "world/centres/buoyancy",
+            rr.Points3D(total, colors=[COLOURS["buoyancy"]], radii=[0.02 * self._size]),
+        )
         arrows = {"weight": (centre, np.array([0.0, 0.0, -weight]))}
         for cause, rows in loads.by_cause.items():
             arrows[cause] = (loads.total.centroid if wet.any() else centre, rows[:, :3].sum(axis=0))
@@ -262,7 +323,7 @@ class Recording:
             return "world/environment"
         return f"world/bodies/{rr.escape_entity_path_part(body_name(self.simulation.model, body))}"
 
-    def _entity(self, shape: Drawn) -> str:
+    def _entity(self, shape: VisibleGeom) -> str:
         """Where a geom stands in the recording."""
         name = geom_name(self.simulation.model, shape.geom)
         return f"{self._body_entity(shape.body)}/{rr.escape_entity_path_part(name)}"
@@ -278,7 +339,9 @@ def _spawn(stream: rr.RecordingStream) -> None:
         stream.flush(timeout_sec=10.0)
     except Exception as error:
         first, *_ = str(error).strip().splitlines()
-        raise RecordingError(f"no Rerun viewer could be started: {first}; record to a file instead (--record)") from error
+        raise RecordingError(
+            f"no Rerun viewer could be started: {first}; record to a file instead (--record)"
+        ) from error
     finally:
         os.environ["PATH"] = before
 

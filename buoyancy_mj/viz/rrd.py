@@ -35,7 +35,9 @@ class RrdFile:
         self.growing = path.with_name(f"{path.stem}.partial.rrd")
         self._written = 0
         if path.is_dir():
-            raise RecordingError(f"cannot write '{path}': it is a folder; choose another place (--record)")
+            raise RecordingError(
+                f"cannot write '{path}': it is a folder; choose another place (--record)"
+            )
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._descriptor = os.open(self.growing, os.O_WRONLY | os.O_CREAT, 0o644)
@@ -67,7 +69,9 @@ class RrdFile:
         except OSError as error:
             os.ftruncate(self._descriptor, self._written)
             path = self.close(complete=False)
-            raise RecordingError(f"the recording broke off: {error.strerror}; what was written is in '{path}'") from error
+            raise RecordingError(
+                f"the recording broke off: {error.strerror}; what was written is in '{path}'"
+            ) from error
 
     def close(self, *, complete: bool) -> Path:
         """Make the file whole and give it its name, unless it is a piece and a whole one is there.
@@ -108,7 +112,9 @@ def _claim(descriptor: int, path: Path) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
         os.close(descriptor)
-        raise RecordingError(f"another run is writing '{path}'; choose another place (--record)") from error
+        raise RecordingError(
+            f"another run is writing '{path}'; choose another place (--record)"
+        ) from error
 
 
 def _messages(chunk: bytes, *, first: bool) -> Iterator[memoryview]:

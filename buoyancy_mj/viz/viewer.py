@@ -35,13 +35,19 @@ def view(simulation: Simulation) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         if not glfw.init():
-            raise ModelError("MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none")
+            raise ModelError(
+                "MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none"
+            )
     try:
         handle = mujoco.viewer.launch_passive(model, data, show_left_ui=False, show_right_ui=False)
     except Exception as error:
-        raise ModelError(f"MuJoCo's viewer could not be opened: {error}; use 'run', which needs none") from error
+        raise ModelError(
+            f"MuJoCo's viewer could not be opened: {error}; use 'run', which needs none"
+        ) from error
     with handle as viewer:
-        size = 4.0 * max(float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls)
+        size = 4.0 * max(
+            float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls
+        )
         viewer.cam.lookat[:] = simulation.centre_of_mass(data)
         viewer.cam.distance = size
         viewer.cam.azimuth, viewer.cam.elevation = 140.0, -20.0
@@ -50,12 +56,20 @@ def view(simulation: Simulation) -> None:
             with viewer.lock():
                 while data.time < until:
                     simulation.step()
-                draw_surface(viewer.user_scn, simulation.scene.water, simulation.centre_of_mass(data), size, data.time)
+                draw_surface(
+                    viewer.user_scn,
+                    simulation.scene.water,
+                    simulation.centre_of_mass(data),
+                    size,
+                    data.time,
+                )
             viewer.sync()
             time.sleep(max(0.0, FRAME_TIME - (time.perf_counter() - started)))
 
 
-def draw_surface(scene: mujoco.MjvScene, water: Water, centre: np.ndarray, width: float, now: float) -> None:
+def draw_surface(
+    scene: mujoco.MjvScene, water: Water, centre: np.ndarray, width: float, now: float
+) -> None:
     """Replace the user geoms of a scene by tiles on the water's surface around `centre` (3,) [m].
 
     Each tile leans as the surface does there; on still water one tile is enough.
@@ -79,7 +93,9 @@ def draw_surface(scene: mujoco.MjvScene, water: Water, centre: np.ndarray, width
         normal /= np.linalg.norm(normal)
         along /= along_length
         across = np.cross(normal, along)
-        half = np.array([0.5 * tile * along_length, 0.5 * tile * np.hypot(1.0, slope_y[place]), 0.0005 * width])
+        half = np.array(
+            [0.5 * tile * along_length, 0.5 * tile * np.hypot(1.0, slope_y[place]), 0.0005 * width]
+        )
         mujoco.mjv_initGeom(
             scene.geoms[scene.ngeom],
             mujoco.mjtGeom.mjGEOM_BOX,

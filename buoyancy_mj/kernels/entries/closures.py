@@ -17,7 +17,9 @@ class Closure:
     It takes no lock and knows no Python. Its code lives as long as this object.
     """
 
-    def __init__(self, target: int, result: type | None, arguments: tuple[type, ...], *bound: int) -> None:
+    def __init__(
+        self, target: int, result: type | None, arguments: tuple[type, ...], *bound: int
+    ) -> None:
         """Compile it.
 
         Args:
@@ -37,7 +39,9 @@ class Closure:
             builder.ret_void()
         else:
             builder.ret(returned)
-        self._engine = llvm.create_mcjit_compiler(llvm.parse_assembly(str(module)), _machine().create_target_machine())
+        self._engine = llvm.create_mcjit_compiler(
+            llvm.parse_assembly(str(module)), _machine().create_target_machine()
+        )
         self._engine.finalize_object()
         self.address = self._engine.get_function_address("closed")
         """Of the function."""

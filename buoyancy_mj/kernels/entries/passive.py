@@ -40,7 +40,9 @@ Pressure = IntEnum("Pressure", "archimedes hydrostatic froude_krylov", start=0)
 Link = IntEnum("Link", "model signature act submerge error gravity_text factor project", start=0)
 """Words of 'links': the own model and its signature; C functions, 0 for none; a text for the engine's error function."""
 Record = IntEnum(
-    "Record", "results centres heads buoyancy wave_pressure drag radiation added_mass total inertia instant ids", start=0
+    "Record",
+    "results centres heads buoyancy wave_pressure drag radiation added_mass total inertia instant ids",
+    start=0,
 )
 """Arrays of what an evaluation leaves."""
 Id = IntEnum("Id", "alive model data water sizes heavier", start=0)
@@ -61,7 +63,9 @@ Offset = IntEnum(
 )
 """What is read of the engine's options, model and data; the last two are written."""
 OFFSETS = tuple(
-    f"mjModel.opt.{entry.name}" if entry < Offset.nbody else f"{'mjModel' if entry < Offset.time else 'mjData'}.{entry.name}"
+    f"mjModel.opt.{entry.name}"
+    if entry < Offset.nbody
+    else f"{'mjModel' if entry < Offset.time else 'mjData'}.{entry.name}"
     for entry in Offset
 )
 """Where each is."""
@@ -96,7 +100,11 @@ def _evaluate(model, data, water, scratch, record):
     subtree_com = doubles(word(data + offsets[Offset.subtree_com]), nbody, 3)
     roots = int32s(word(model + offsets[Offset.body_rootid]), nbody)
     waves, sea, owners = grid(water, Water.waves), row(water, Water.sea), words(water, Water.owners)
-    wet, centres, total = grid(record, Record.results), grid(record, Record.centres), grid(record, Record.total)
+    wet, centres, total = (
+        grid(record, Record.results),
+        grid(record, Record.centres),
+        grid(record, Record.total),
+    )
     # what is under water
     if links[Link.submerge] != 0:
         text = call(links[Link.submerge], water, data, record, 0)
@@ -154,7 +162,14 @@ def _evaluate(model, data, water, scratch, record):
         )
         pushed[:, :] = 0.0
         wrenches.add_wave_pressure(
-            heads, wet, owners, words(water, Water.frames), geom_xpos, sea[0] * strength, xipos, pushed
+            heads,
+            wet,
+            owners,
+            words(water, Water.frames),
+            geom_xpos,
+            sea[0] * strength,
+            xipos,
+            pushed,
         )
         _add_to(total, pushed)
     if words(water, Water.damped).shape[0] > 0:
@@ -185,7 +200,11 @@ def _slow_down(model, data, water, record, time, xipos, subtree_com, roots):
     """Add drag and the damping by waves made."""
     offsets, sea = words(water, Water.offsets), row(water, Water.sea)
     nbody, ngeom = word(model + offsets[Offset.nbody]), word(model + offsets[Offset.ngeom])
-    wet, centres, total = grid(record, Record.results), grid(record, Record.centres), grid(record, Record.total)
+    wet, centres, total = (
+        grid(record, Record.results),
+        grid(record, Record.centres),
+        grid(record, Record.total),
+    )
     owners = words(water, Water.owners)
     moving = damping.Moving(
         words(water, Water.damped),
@@ -350,7 +369,9 @@ def act(model, data, water, record):
     """Act on data with scratch of the pool, and its own record if none is given; gives 0, or the address of a text."""
     scratch = _free_scratch(water)
     state = word(scratch + 24 * Scratch.state)
-    text = _evaluate(model, data, water, scratch, record if record != 0 else word(state + 8 * State.record))
+    text = _evaluate(
+        model, data, water, scratch, record if record != 0 else word(state + 8 * State.record)
+    )
     give(state)
     return text
 

@@ -49,7 +49,11 @@ def destroy(data, instance, context):
 def copy(target, model, source, instance, context):
     """The engine copies a data: the record's contents go along, if both are of one water."""
     one, other = word(_slot(target, instance, context)), word(_slot(source, instance, context))
-    if one == 0 or other == 0 or words(one, Record.ids)[Id.water] != words(other, Record.ids)[Id.water]:
+    if (
+        one == 0
+        or other == 0
+        or words(one, Record.ids)[Id.water] != words(other, Record.ids)[Id.water]
+    ):
         return
     for k in range(Record.ids):
         grid(one, k)[:, :] = grid(other, k)

@@ -37,7 +37,9 @@ def take(typing, address):
 
     def code(context, builder, signature, args):
         word = ir.IntType(64)
-        return builder.atomic_rmw("xchg", builder.inttoptr(args[0], word.as_pointer()), word(1), "seq_cst")
+        return builder.atomic_rmw(
+            "xchg", builder.inttoptr(args[0], word.as_pointer()), word(1), "seq_cst"
+        )
 
     return types.int64(types.int64), code
 
@@ -48,7 +50,9 @@ def give(typing, address):
 
     def code(context, builder, signature, args):
         word = ir.IntType(64)
-        return builder.atomic_rmw("xchg", builder.inttoptr(args[0], word.as_pointer()), word(0), "seq_cst")
+        return builder.atomic_rmw(
+            "xchg", builder.inttoptr(args[0], word.as_pointer()), word(0), "seq_cst"
+        )
 
     return types.int64(types.int64), code
 
@@ -80,7 +84,11 @@ def int32s(address, rows):
 @njit(cache=True, error_model="numpy", inline="always")
 def grid(table, k):
     """The k-th array of a table, of two dimensions."""
-    return carray(pointer(word(table + 24 * k)), (word(table + 24 * k + 8), word(table + 24 * k + 16)), np.float64)
+    return carray(
+        pointer(word(table + 24 * k)),
+        (word(table + 24 * k + 8), word(table + 24 * k + 16)),
+        np.float64,
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
