@@ -1,5 +1,7 @@
 """Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, exact on its own meshes."""
 
+import dataclasses
+
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.engine.plugin import add_water as add_water
 from buoyancy_mj.engine.plugin import water_in as water_in
@@ -16,14 +18,18 @@ from buoyancy_mj.errors import RecordingError as RecordingError
 from buoyancy_mj.errors import SceneError as SceneError
 from buoyancy_mj.errors import SweepError as SweepError
 from buoyancy_mj.errors import WaterError as WaterError
+from buoyancy_mj.hulls.selection import Selection as Selection
 from buoyancy_mj.loads.coefficients import Coefficients as Coefficients
 from buoyancy_mj.loads.coefficients import read_coefficients as read_coefficients
 from buoyancy_mj.loads.coefficients import state_coefficients as state_coefficients
-from buoyancy_mj.loads.drag import Drag as Drag
+from buoyancy_mj.loads.damping import Damping as Damping
+from buoyancy_mj.loads.damping import Panels as Panels
+from buoyancy_mj.loads.damping import Silhouette as Silhouette
 from buoyancy_mj.loads.loads import Loads as Loads
 from buoyancy_mj.loads.loads import Portion as Portion
 from buoyancy_mj.meshes.mesh import TriMesh as TriMesh
 from buoyancy_mj.meshes.repair import repair as repair
+from buoyancy_mj.records import show_fields as show_fields
 from buoyancy_mj.scenes.frames import Frame as Frame
 from buoyancy_mj.scenes.frames import Summary as Summary
 from buoyancy_mj.scenes.scene import Scene as Scene
@@ -38,10 +44,12 @@ from buoyancy_mj.sea.water import Water as Water
 from buoyancy_mj.sea.waves import LevelOscillation as LevelOscillation
 from buoyancy_mj.sea.waves import RegularWave as RegularWave
 from buoyancy_mj.sea.waves import wavenumber as wavenumber
+from buoyancy_mj.settings.settings import Settings as Settings
 from buoyancy_mj.statics.ballast import Ballast as Ballast
 from buoyancy_mj.statics.ballast import BallastItem as BallastItem
 from buoyancy_mj.statics.ballast import ballast as ballast
 from buoyancy_mj.statics.equilibrium import Equilibrium as Equilibrium
+from buoyancy_mj.statics.equilibrium import equilibria as equilibria
 from buoyancy_mj.statics.equilibrium import equilibrium as equilibrium
 from buoyancy_mj.statics.hydrostatics import Hydrostatics as Hydrostatics
 from buoyancy_mj.statics.hydrostatics import hydrostatics as hydrostatics
@@ -52,3 +60,7 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+
+for _value in tuple(globals().values()):
+    if isinstance(_value, type) and dataclasses.is_dataclass(_value):
+        show_fields(_value)

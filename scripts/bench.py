@@ -39,6 +39,7 @@ from buoyancy_mj import (
     Simulation,
     TriMesh,
     Water,
+    equilibria,
     equilibrium,
     hydrostatics,
     read_scene,
@@ -333,7 +334,7 @@ def statics(path: Path, least: float) -> dict[str, float]:
         ("hydrostatics", lambda i: hydrostatics(model, qpos=starts[i])),
         ("equilibrium", lambda i: equilibrium(model, start=starts[i])),
         ("once more from the same vessel", lambda i: find_balance(vessel, TURNS[i])),
-        ("every equilibrium", lambda i: equilibrium(model, all=True)),
+        ("every equilibrium", lambda i: equilibria(model)),
         ("righting arm", lambda i: righting_arm(model)),
     ):
         times[name] = median_time(call, least, fewest=3)

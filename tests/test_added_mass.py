@@ -131,7 +131,7 @@ def test_each_bodys_matrix_enters_as_its_jacobians_say(native):
     mujoco.mj_forward(model, data)
     plain, full = np.zeros((model.nv, model.nv)), np.zeros((model.nv, model.nv))
     mujoco.mj_fullM(model, data, plain)
-    with Buoyancy(model, drag=None).installed(native=native):
+    with Buoyancy(model, damping=None).installed(native=native):
         mujoco.mj_forward(model, data)
     mujoco.mj_fullM(model, data, full)
     expected = plain.copy()
@@ -217,7 +217,7 @@ def test_a_neutral_body_moves_by_kirchhoffs_equations_in_any_current(native, cur
     v, w = np.array([0.5, -0.3, 0.2]), np.array([0.3, 0.8, -0.4])
     data = mujoco.MjData(model)
     data.qvel[:] = [*(v + current), *w]
-    with Buoyancy(model, Water(current=current), drag=None, added_mass={"b": added}).installed(
+    with Buoyancy(model, Water(current=current), damping=None, added_mass={"b": added}).installed(
         native=native
     ):
         while data.time < 2.0 - 1e-9:
@@ -243,7 +243,7 @@ def test_a_sphere_bobs_slower_by_what_is_wet_of_it():
         data = mujoco.MjData(model)
         data.qpos[2] = 0.002
         crossings, last = [], data.qpos[2]
-        with Buoyancy(model, drag=None).installed():
+        with Buoyancy(model, damping=None).installed():
             while data.time < 5.0:
                 mujoco.mj_step(model, data)
                 if last < 0.0 <= data.qpos[2]:
@@ -267,7 +267,7 @@ def test_the_bluerov2_heavy_rolls_and_pitches_with_its_periods():
         data.qpos[3:7] = [math.cos(0.01), 0, 0, 0]
         data.qpos[4 + axis] = math.sin(0.01)
         angles, times = [], []
-        with Buoyancy(model, drag=None).installed():
+        with Buoyancy(model, damping=None).installed():
             while data.time < 12.0:
                 angles.append(2.0 * data.qpos[4 + axis])
                 times.append(data.time)
@@ -301,7 +301,7 @@ def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
     water = Water(waves=wave)
     places = []
     with Buoyancy(
-        model, water, drag=None, pressure="froude-krylov", added_mass="estimate"
+        model, water, damping=None, pressure="froude-krylov", added_mass="estimate"
     ).installed():
         while data.time < wave.period:
             places.append(data.qpos[:3].copy())

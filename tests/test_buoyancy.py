@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from mujoco import rollout
 
-from buoyancy_mj import Buoyancy, Drag, LevelOscillation, ModelError, RegularWave, Water
+from buoyancy_mj import (
+    Buoyancy,
+    Damping,
+    LevelOscillation,
+    ModelError,
+    RegularWave,
+    Silhouette,
+    Water,
+)
 from buoyancy_mj.hulls.geoms import find_hulls
 
 BOX = """
@@ -52,7 +60,7 @@ def test_the_force_is_rho_g_v_at_the_centroid_of_what_is_wet():
     model, data = box(z=0.03)
     data.qpos[3:7] = [np.cos(0.1), np.sin(0.1), 0.0, 0.0]
     mujoco.mj_forward(model, data)
-    loads = Buoyancy(model, Water(density=1025.0), drag=None).evaluate(data)
+    loads = Buoyancy(model, Water(density=1025.0), damping=None).evaluate(data)
     volume, centroid = float(loads.total.volume), loads.total.centroid
     assert loads.total.force == pytest.approx([0.0, 0.0, 1025.0 * 9.81 * volume])
     assert loads.body.force[1] == pytest.approx(loads.total.force)
@@ -136,7 +144,7 @@ def test_gravity_is_the_models():
     for gravity in (9.81, 1.62):
         model, data = box(gravity=f"0 0 -{gravity}", z=-1.0)
         mujoco.mj_forward(model, data)
-        assert Buoyancy(model, drag=None).evaluate(data).total.force[2] == pytest.approx(
+        assert Buoyancy(model, damping=None).evaluate(data).total.force[2] == pytest.approx(
             1000.0 * gravity * 0.024
         )
 
@@ -145,7 +153,9 @@ def test_gravity_is_the_models():
 def test_without_gravity_there_is_no_buoyancy(flag):
     model, data = box(flag=flag, z=-1.0) if flag else box(gravity="0 0 0", z=-1.0)
     mujoco.mj_forward(model, data)
-    assert Buoyancy(model, drag=None).evaluate(data).total.force == pytest.approx([0.0, 0.0, 0.0])
+    assert Buoyancy(model, damping=None).evaluate(data).total.force == pytest.approx(
+        [0.0, 0.0, 0.0]
+    )
 
 
 # models where it could not work ---------------------------------------------------------------------
@@ -175,7 +185,7 @@ def test_a_model_whose_callback_would_be_skipped_is_refused():
 
 def test_springs_and_dampers_may_be_disabled():
     model, data = box(flag="spring='disable' damper='disable'", z=-1.0)
-    with Buoyancy(model, drag=None).installed():
+    with Buoyancy(model, damping=None).installed():
         mujoco.mj_forward(model, data)
     assert data.qacc[2] == pytest.approx(9.81 * (24.0 / 6.0 - 1.0))
 
@@ -211,7 +221,7 @@ def test_threads_that_share_one_buoyancy_do_not_disturb_each_other():
 def test_a_buoyant_body_comes_to_rest_under_each_integrator(integrator):
     model, data = box(integrator)
     model.opt.timestep = 0.01
-    with Buoyancy(model, drag=Drag(linear_froude=0.5)).installed():
+    with Buoyancy(model, damping=Damping(viscous=Silhouette(linear_froude=0.5))).installed():
         steps(model, data, 3000)
     # draft = mass / (rho A)
     assert 0.1 - data.qpos[2] == pytest.approx(6.0 / (1000.0 * 0.4 * 0.3), abs=1e-6)
@@ -223,7 +233,7 @@ def test_all_integrators_agree_on_a_short_drop():
     for integrator in INTEGRATORS:
         model, data = box(integrator)
         model.opt.timestep = 2e-4
-        with Buoyancy(model, drag=None).installed():
+        with Buoyancy(model, damping=None).installed():
             steps(model, data, 2000)
         ends.append(data.qpos[2])
     assert ends == pytest.approx([ends[1]] * 5, abs=2e-4)
@@ -234,7 +244,7 @@ def test_rk4_is_of_fourth_order_with_the_water_in_every_stage():
         model, data = box("RK4", z=0.02)
         model.opt.timestep = timestep
         # smooth all along: the box bobs without leaving the water or going under
-        with Buoyancy(model, Water(waves=LevelOscillation(0.01, 0.5)), drag=None).installed():
+        with Buoyancy(model, Water(waves=LevelOscillation(0.01, 0.5)), damping=None).installed():
             steps(model, data, round(0.64 / timestep))
         return data.qpos[2]
 
@@ -321,7 +331,7 @@ def test_the_viewers_mouse_writes_the_row_it_wants():
 
 def test_a_call_twice_in_one_pass_acts_once():
     model, data = box(z=-1.0)
-    buoyancy = Buoyancy(model, drag=None)
+    buoyancy = Buoyancy(model, damping=None)
     mujoco.mj_step1(model, data)
     buoyancy(model, data)
     once = data.qfrc_passive.copy()
@@ -340,7 +350,7 @@ def test_finite_differences_of_the_transition_see_the_water_once():
     )
     data = mujoco.MjData(model)
     a, b = np.zeros((2, 2)), np.zeros((2, 1))
-    with Buoyancy(model, drag=None).installed():
+    with Buoyancy(model, damping=None).installed():
         mujoco.mj_forward(model, data)
         mujoco.mjd_transitionFD(model, data, 1e-6, True, a, b, None, None)
     # dv'/dz = -h rho g A / m, dv'/du = h / m
@@ -479,7 +489,7 @@ def test_without_the_callback_it_sinks():
 
 def test_it_is_itself_a_control_callback():
     model, data = box(z=-1.0)
-    mujoco.set_mjcb_control(Buoyancy(model, drag=None))
+    mujoco.set_mjcb_control(Buoyancy(model, damping=None))
     try:
         mujoco.mj_step(model, data)
     finally:
@@ -519,7 +529,7 @@ def test_each_body_gets_its_own_wrench():
     data = mujoco.MjData(model)
     data.qpos[2], data.qpos[7] = -0.3, 0.4
     mujoco.mj_forward(model, data)
-    loads = Buoyancy(model, drag=None).evaluate(data)
+    loads = Buoyancy(model, damping=None).evaluate(data)
     for hull in find_hulls(model):
         assert loads.body.force[hull.body, 2] == pytest.approx(9810.0 * hull.mesh.volume)
         assert loads.body.centroid[hull.body] == pytest.approx(data.geom_xpos[hull.geom])
@@ -559,7 +569,7 @@ def test_a_geom_on_a_body_without_a_joint_floats_its_parent():
 def test_waves_are_felt_at_the_time_of_the_data():
     model, data = box(z=0.05)
     water = Water(waves=RegularWave(0.05, period=2.0))
-    buoyancy = Buoyancy(model, water, drag=None)
+    buoyancy = Buoyancy(model, water, damping=None)
     volumes = []
     for time in (0.0, 1.0):
         data.time = time

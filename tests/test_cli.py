@@ -253,7 +253,7 @@ def test_a_diverging_run_keeps_its_recording(run, tmp_path):
         "--set",
         "integrator=Euler",
         "--set",
-        "drag=false",
+        "damping=false",
     )
     result = run("run", "auv_waves", *arguments, "--record", "out.rrd")
     assert result.exit_code == 1

@@ -14,7 +14,8 @@ from buoyancy_mj import (
     WaterError,
 )
 from buoyancy_mj.scenes.scene import read_scene, scene_from_table
-from buoyancy_mj.settings.settings import Settings, parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.settings import Settings
 
 PROFILE = CurrentProfile((0.0, 2.0, 10.0), ((1.0, 0.0, 0.0), (0.5, 0.2, 0.0), (0.0, 0.0, 0.0)))
 SERIES = CurrentSeries((0.0, 10.0, 15.0), ((0.0, 0.0, 0.0), (1.0, -0.5, 0.0), (1.0, 0.0, 0.1)))

@@ -6,7 +6,16 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj import Buoyancy, Drag, MethodError, ModelError, RegularWave, Water
+from buoyancy_mj import (
+    Buoyancy,
+    Damping,
+    MethodError,
+    ModelError,
+    Panels,
+    RegularWave,
+    Silhouette,
+    Water,
+)
 from tests.naive import roll
 
 LINEAR = np.array(
@@ -102,7 +111,9 @@ def test_compiled_and_python_passes_agree(panels):
     ends = []
     for native in (False, True):
         data = moving(model, np.array([0.3, -0.3, 0.2, 0.5, -0.8, 0.2]))
-        buoyancy = Buoyancy(model, water, drag=Drag(panels=panels))
+        buoyancy = Buoyancy(
+            model, water, damping=Damping(viscous=Panels() if panels else Silhouette())
+        )
         with buoyancy.installed(native=native):
             mujoco.mj_step(model, data, 200)
         ends.append(
@@ -120,7 +131,7 @@ def test_radiation_takes_from_heave_roll_and_pitch_at_the_surface_alone():
     model = of({"radiation_damping": [50.0, 4.0, 6.0]}, pos="0 0 0")
     v = np.array([0.2, 0.1, 0.3, 0.5, -0.8, 0.2])
     data = moving(model, v, turn=0.0)
-    buoyancy = Buoyancy(model, drag=Drag(viscous=False))
+    buoyancy = Buoyancy(model, damping=Damping(viscous=None))
     loads = buoyancy.evaluate(data)
     # half in the water: its whole waterplane, at the centroid 5 cm down
     at = v[:3] + np.cross(v[3:], [0.0, 0.0, -0.05])
@@ -135,8 +146,8 @@ def test_radiation_takes_from_heave_roll_and_pitch_at_the_surface_alone():
     mujoco.mj_forward(model, data)
     assert not buoyancy.evaluate(data).by_cause["radiation"].any()
     # and each can be switched off
-    assert "radiation" not in Buoyancy(model, drag=Drag(radiation=False)).causes
-    assert "radiation" not in Buoyancy(model, drag=None).causes
+    assert "radiation" not in Buoyancy(model, damping=Damping(radiation=False)).causes
+    assert "radiation" not in Buoyancy(model, damping=None).causes
     assert "radiation" not in Buoyancy(of({})).causes
 
 
@@ -148,7 +159,7 @@ def test_the_decay_of_heave_is_that_of_its_radiation():
     model.body_ipos[1], model.opt.timestep = [0.0, 0.0, -1e-3], 0.002
     data = mujoco.MjData(model)
     heights = []
-    with Buoyancy(model, drag=Drag(viscous=False)).installed():
+    with Buoyancy(model, damping=Damping(viscous=None)).installed():
         for _ in range(1500):
             mujoco.mj_step(model, data)
             heights.append(data.qpos[2])
@@ -170,7 +181,7 @@ def drag_of(geom, velocity, **options):
     model = of({}, geom)
     data = moving(model, np.asarray(velocity, float), turn=0.0)
     return (
-        Buoyancy(model, Water(density=1025.0), drag=Drag(panels=True, **options))
+        Buoyancy(model, Water(density=1025.0), damping=Damping(viscous=Panels(**options)))
         .evaluate(data)
         .by_cause["drag"][1]
     )
@@ -207,15 +218,15 @@ def test_a_sphere_has_half_the_coefficient_and_no_torque():
 
 def test_half_in_the_water_a_hull_has_half_of_it():
     model = of({}, pos="0 0 0")
-    water, options = Water(), Drag(panels=True)
-    half = Buoyancy(model, water, drag=options).evaluate(
+    water, options = Water(), Damping(viscous=Panels())
+    half = Buoyancy(model, water, damping=options).evaluate(
         moving(model, np.array([0.5, 0, 0, 0, 0, 0]), 0.0)
     )
     model.body_pos[1] = [0, 0, -2.0]
     data = moving(model, np.array([0.5, 0, 0, 0, 0, 0]), 0.0)
     data.qpos[2] = -2.0
     mujoco.mj_forward(model, data)
-    whole = Buoyancy(model, water, drag=options).evaluate(data)
+    whole = Buoyancy(model, water, damping=options).evaluate(data)
     faces = 0.5 * 1000 * 1.05 * 0.08 * 0.25
     assert half.by_cause["drag"][1, 0] == pytest.approx(-0.5 * faces, rel=0.06)
     assert whole.by_cause["drag"][1, 0] == pytest.approx(-faces, rel=0.06)
@@ -228,7 +239,7 @@ def test_panels_only_slow_a_light_body_down(native):
     model.opt.timestep, model.opt.gravity[2] = 0.01, 0.0
     data = moving(model, np.array([0.5, 0.3, 8.0, 3.0, -9.0, 1.0]))
     energies = []
-    with Buoyancy(model, drag=Drag(panels=True)).installed(native=native):
+    with Buoyancy(model, damping=Damping(viscous=Panels())).installed(native=native):
         for _ in range(100):
             mujoco.mj_step(model, data)
             mujoco.mj_energyVel(model, data)
@@ -262,13 +273,15 @@ def test_damping_that_makes_no_sense_is_told(custom, message):
 
 
 def test_bad_options_of_drag_are_told():
-    with pytest.raises(ModelError, match="drag panels is 3; it must be true or false"):
-        Drag(panels=3)
-    with pytest.raises(ModelError, match="drag has panels, but viscous is false"):
-        Drag(panels=True, viscous=False)
-    with pytest.raises(ModelError, match="drag viscosity is 0; panels need one"):
-        Drag(panels=True, viscosity=0.0)
+    with pytest.raises(
+        ModelError, match=r"damping viscous is 3; it must be Silhouette\(\), Panels\(\)"
+    ):
+        Damping(viscous=3)
+    with pytest.raises(ModelError, match="damping radiation is 3; it must be true or false"):
+        Damping(radiation=3)
+    with pytest.raises(ModelError, match="damping viscosity is 0; panels need one"):
+        Damping(viscous=Panels(viscosity=0.0))
     with pytest.raises(
         MethodError, match="drag by panels needs the method 'exact', not 'convex_hull'"
     ):
-        Buoyancy(of({}), drag=Drag(panels=True), method="convex_hull")
+        Buoyancy(of({}), damping=Damping(viscous=Panels()), method="convex_hull")

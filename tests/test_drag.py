@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj import Buoyancy, Drag, ModelError, Water
+from buoyancy_mj import Buoyancy, Damping, ModelError, Silhouette, Water
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.loads.drag import resolve_damping
 
@@ -11,7 +11,7 @@ def damping(geom, drag=None, extra="", density=1000.0):
     model = mujoco.MjModel.from_xml_string(
         f"<mujoco><worldbody><body><freejoint/>{geom}{extra}</body></worldbody></mujoco>"
     )
-    return resolve_damping(drag or Drag(), model, find_hulls(model), density)
+    return resolve_damping(drag or Damping(), model, find_hulls(model), density)
 
 
 def coefficients(geom, areas):
@@ -58,11 +58,13 @@ def test_turning_a_plate_meets_the_flow_at_each_strips_own_speed():
 
 
 def test_linear_and_quadratic_parts_are_equal_at_the_stated_froude_number():
-    d = damping('<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.07))
+    d = damping(
+        '<geom type="box" size=".5 .2 .2"/>', Damping(viscous=Silhouette(linear_froude=0.07))
+    )
     speed = 0.07 * np.sqrt(9.81 * 1.0)
     assert d.linear[0, :3] == pytest.approx(d.quadratic[0, :3] * speed)
     assert damping(
-        '<geom type="box" size=".5 .2 .2"/>', Drag(linear_froude=0.0)
+        '<geom type="box" size=".5 .2 .2"/>', Damping(viscous=Silhouette(linear_froude=0.0))
     ).linear == pytest.approx(0.0)
 
 
@@ -75,7 +77,11 @@ def test_the_force_on_a_moving_box_is_half_rho_c_a_v_squared():
     data = mujoco.MjData(model)
     data.qvel[0] = 1.5
     mujoco.mj_forward(model, data)
-    rows = Buoyancy(model, drag=Drag(linear_froude=0.0)).evaluate(data).by_cause["drag"]
+    rows = (
+        Buoyancy(model, damping=Damping(viscous=Silhouette(linear_froude=0.0)))
+        .evaluate(data)
+        .by_cause["drag"]
+    )
     assert rows[1, :3] == pytest.approx([-0.5 * 1000.0 * 1.05 * 0.08 * 1.5**2, 0.0, 0.0], rel=1e-2)
 
 
@@ -113,9 +119,9 @@ def test_a_body_at_rest_in_a_current_is_pushed_along():
 )
 def test_impossible_drag_is_told(field, value):
     with pytest.raises(
-        ModelError, match=f"drag {field} is .*; it must be a finite number of at least 0"
+        ModelError, match=f"damping {field} is .*; it must be a finite number of at least 0"
     ):
-        Drag(**{field: value})
+        Damping(viscous=Silhouette(**{field: value}))
 
 
 ROV = """<mujoco><option timestep="0.01" gravity="0 0 -9.81"/><custom>
@@ -158,7 +164,7 @@ def test_the_bluerov2_heavy_reaches_its_terminal_speeds(density, push, axis, spe
 
 
 def test_what_is_stated_replaces_the_estimate_of_that_body():
-    damping = resolve_damping(Drag(), rov(), find_hulls(rov()), 1000.0)
+    damping = resolve_damping(Damping(), rov(), find_hulls(rov()), 1000.0)
     assert damping.linear[0].tolist() == [13.7, 0, 33, 0, 0.8, 0]
     assert damping.quadratic[0].tolist() == [141, 217, 190, 1.19, 0.47, 1.5]
 

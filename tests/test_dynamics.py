@@ -5,7 +5,16 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from buoyancy_mj import Buoyancy, Drag, LevelOscillation, Simulation, Water, read_scene, submerge
+from buoyancy_mj import (
+    Buoyancy,
+    Damping,
+    LevelOscillation,
+    Silhouette,
+    Simulation,
+    Water,
+    read_scene,
+    submerge,
+)
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.scenes import catalog
 from tests import naive
@@ -26,7 +35,7 @@ def run(model, duration, look, water=None, drag=None, start=(0, 0, 0, 1, 0, 0, 0
     data.qpos[:7] = start
     data.qvel[3:6] = spin
     seen = []
-    with Buoyancy(model, water, drag=drag).installed():
+    with Buoyancy(model, water, damping=drag).installed():
         for _ in range(round(duration / model.opt.timestep)):
             mujoco.mj_step(model, data)
             seen.append(look(data))
@@ -115,7 +124,7 @@ def test_an_undamped_body_keeps_its_energy_for_twenty_cycles(geom):
     model = model_of(geom)
     data = mujoco.MjData(model)
     data.qpos[:7] = (0, 0, 0.15, np.cos(0.15), np.sin(0.12), np.sin(0.09), 0)
-    buoyancy = Buoyancy(model, drag=None)
+    buoyancy = Buoyancy(model, damping=None)
     energies, heights = [], []
     with buoyancy.installed():
         for _ in range(round(24.0 / 0.002)):
@@ -157,7 +166,7 @@ def test_a_box_settles_at_the_draft_of_its_mass():
         model,
         60.0,
         lambda d: d.qpos[2],
-        drag=Drag(linear_froude=0.2),
+        drag=Damping(viscous=Silhouette(linear_froude=0.2)),
         start=(0, 0, 0.3, 1, 0, 0, 0),
     )
     assert 0.1 - z[-1] == pytest.approx(9.0 / (1000.0 * 0.24), abs=1e-5)
@@ -168,7 +177,7 @@ def test_the_default_drag_settles_a_drop_within_a_minute():
     model = model_of(
         '<geom type="box" size=".3 .2 .1" mass="9"/>', integrator="implicitfast", timestep=0.01
     )
-    z = run(model, 60.0, lambda d: d.qpos[2], drag=Drag(), start=(0, 0, 0.3, 1, 0, 0, 0))
+    z = run(model, 60.0, lambda d: d.qpos[2], drag=Damping(), start=(0, 0, 0.3, 1, 0, 0, 0))
     assert np.ptp(z[-500:]) < 0.002
 
 
@@ -202,7 +211,7 @@ def test_the_auv_at_rest_neither_turns_nor_drifts_in_a_minute():
 def test_a_body_of_revolution_gets_no_spin_from_still_water():
     model, data, _ = at_rest("hourglass")
     data.qpos[3:7] = (np.cos(0.2), np.sin(0.2), 0, 0)
-    with Buoyancy(model, drag=None).installed():
+    with Buoyancy(model, damping=None).installed():
         for _ in range(1000):
             mujoco.mj_step(model, data)
             # the facets of the mesh leave a little
@@ -213,7 +222,7 @@ def test_the_hourglass_comes_to_rest_upright():
     model = mujoco.MjModel.from_xml_path(str(catalog.models()["hourglass"]))
     model.opt.timestep, model.opt.integrator = 0.005, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     start = (0, 0, 0.5, np.cos(0.6), np.sin(0.6), 0, 0)
-    ends = run(model, 60.0, lambda d: [d.xmat[1][8], *d.qvel], drag=Drag(), start=start)
+    ends = run(model, 60.0, lambda d: [d.xmat[1][8], *d.qvel], drag=Damping(), start=start)
     assert ends[-1][0] > 0.9999
     assert np.abs(ends[-1][1:]).max() < 0.02
 
@@ -223,7 +232,7 @@ def test_a_hull_released_at_thirty_degrees_rights_itself():
         '<geom type="box" size=".5 .3 .1" density="400"/>', integrator="implicitfast", timestep=0.01
     )
     start = (0, 0, 0, np.cos(np.pi / 12), np.sin(np.pi / 12), 0, 0)
-    upright = run(model, 60.0, lambda d: d.xmat[1][8], drag=Drag(), start=start)
+    upright = run(model, 60.0, lambda d: d.xmat[1][8], drag=Damping(), start=start)
     assert upright[0] == pytest.approx(np.cos(np.pi / 6), abs=1e-3)
     assert upright[-500:].min() > 0.999
 
@@ -235,7 +244,9 @@ def test_the_cuboid_of_openfoam_tips_over():
         integrator="implicitfast",
         timestep=0.005,
     )
-    upright = run(model, 20.0, lambda d: d.xmat[1][8], drag=Drag(), start=(0, 0, 0, 1, 0.001, 0, 0))
+    upright = run(
+        model, 20.0, lambda d: d.xmat[1][8], drag=Damping(), start=(0, 0, 0, 1, 0.001, 0, 0)
+    )
     assert abs(upright[-1]) < 0.1
 
 
@@ -246,7 +257,9 @@ def test_drag_is_relative_to_the_current():
     model = model_of(
         '<geom type="box" size=".3 .2 .1" mass="12"/>', integrator="implicitfast", timestep=0.01
     )
-    speed = run(model, 60.0, lambda d: d.qvel[0], water=Water(current=(0.4, 0.0, 0.0)), drag=Drag())
+    speed = run(
+        model, 60.0, lambda d: d.qvel[0], water=Water(current=(0.4, 0.0, 0.0)), drag=Damping()
+    )
     assert speed[-1] == pytest.approx(0.4, abs=1e-3)
 
 
@@ -277,7 +290,7 @@ def test_waves_carry_the_vehicle_with_the_moving_level_of_the_source_paper():
         60.0,
         lambda d: d.qpos[2],
         water=Water(waves=LevelOscillation(0.3, 0.05)),
-        drag=Drag(),
+        drag=Damping(),
     )
     assert np.ptp(z[-2500:]) == pytest.approx(0.6, rel=0.02)
 

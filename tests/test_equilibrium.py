@@ -18,6 +18,7 @@ from buoyancy_mj import (
     Simulation,
     Start,
     Water,
+    equilibria,
     equilibrium,
 )
 from buoyancy_mj.meshes import shapes
@@ -48,7 +49,7 @@ def test_a_box_rights_itself_from_any_heel_short_of_its_vanishing_stability():
 
 
 def test_a_box_floats_on_either_face_and_nowhere_else():
-    found = equilibrium(vessels.box(), all=True)
+    found = equilibria(vessels.box())
     assert sorted(abs(math.degrees(one.hydrostatics.heel)) for one in found) == pytest.approx(
         [0.0, 180.0], abs=1e-6
     )
@@ -75,7 +76,7 @@ def test_a_square_log_floats_flat_slanted_or_on_edge(ratio, angle):
 
 
 def test_a_cube_of_half_density_floats_on_any_of_its_corners():
-    found = equilibrium(vessels.box((0.5, 0.5, 0.5), 500.0), all=True)
+    found = equilibria(vessels.box((0.5, 0.5, 0.5), 500.0))
     assert len(found) == 8
     downs = np.array(
         [
@@ -103,15 +104,13 @@ def test_the_tall_cuboid_of_openfoam_stands_only_on_paper():
 
 @pytest.mark.parametrize("shape", ["cylinder", "capsule"])
 def test_a_log_rolls_without_resistance_and_counts_once(shape):
-    found = equilibrium(
-        vessels.of_geoms(f'<geom type="{shape}" size=".2 1" mass="100"/>'), all=True
-    )
+    found = equilibria(vessels.of_geoms(f'<geom type="{shape}" size=".2 1" mass="100"/>'))
     assert len(found) == 1
     assert abs(Rotation.from_quat(found[0].qpos[3:], scalar_first=True).apply([0, 0, 1])[2]) < 1e-6
 
 
 def test_a_homogeneous_ball_is_indifferent():
-    found = equilibrium(vessels.of_geoms('<geom type="sphere" size=".5" mass="100"/>'), all=True)
+    found = equilibria(vessels.of_geoms('<geom type="sphere" size=".5" mass="100"/>'))
     assert [one.stability for one in found] == ["indifferent"]
 
 
@@ -140,7 +139,7 @@ def test_at_rest_forces_vanish_and_every_small_tilt_comes_back(seed, ratio):
     data = mujoco.MjData(model)
     data.qpos[:] = found.qpos
     mujoco.mj_forward(model, data)
-    total = Buoyancy(model, drag=None).evaluate(data).total
+    total = Buoyancy(model, damping=None).evaluate(data).total
     weight = model.body_mass.sum() * 9.81
     assert total.force[2] == pytest.approx(weight, rel=1e-9)
     assert total.centroid[:2] == pytest.approx(data.subtree_com[1, :2], abs=1e-8)
@@ -197,7 +196,7 @@ def test_what_weighs_just_what_it_displaces_hovers_with_its_buoyancy_on_top():
     assert math.degrees(found.hydrostatics.trim) == pytest.approx(
         math.degrees(math.atan2(0.1, 0.02)), rel=1e-9
     )
-    assert len(equilibrium(model, all=True)) == 1
+    assert len(equilibria(model)) == 1
 
 
 def test_a_hair_of_reserve_is_enough_to_float():

@@ -6,7 +6,7 @@ import pytest
 import shapely
 import shapely.affinity
 
-from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Water
+from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Selection, Water
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.meshes import shapes
 from tests.naive import two_cones
@@ -47,7 +47,7 @@ def test_each_body_displaces_by_its_collision_geoms_or_else_its_visual_ones():
 
 
 def test_what_cannot_move_displaces_nothing():
-    assert names(find_hulls(vehicle(), "*")) == [
+    assert names(find_hulls(vehicle(), Selection(geoms="*"))) == [
         "hull_collision + hull_visual",
         "mast_visual",
         "arm/ellipsoid 5",
@@ -66,13 +66,13 @@ def test_what_cannot_move_displaces_nothing():
     ],
 )
 def test_patterns_and_groups_choose(patterns, chosen):
-    assert names(find_hulls(vehicle(), patterns)) == chosen
+    assert names(find_hulls(vehicle(), Selection(geoms=patterns))) == chosen
 
 
 def test_the_vehicle_itself_may_choose_and_the_user_overrules_it():
     model = vehicle('<text name="buoyancy_geoms" data="hull_visual mast*"/>')
     assert names(find_hulls(model)) == ["hull_visual", "mast_visual"]
-    assert names(find_hulls(model, "hull_collision")) == ["hull_collision"]
+    assert names(find_hulls(model, Selection(geoms="hull_collision"))) == ["hull_collision"]
 
 
 def test_a_pattern_that_matches_nothing_lists_what_there_is():
@@ -80,11 +80,11 @@ def test_a_pattern_that_matches_nothing_lists_what_there_is():
         ModelError,
         match=r"no moving geom matches 'hull_vizual'; did you mean 'hull_visual'\? possible: arm/",
     ):
-        find_hulls(vehicle(), "hull_vizual")
+        find_hulls(vehicle(), Selection(geoms="hull_vizual"))
     with pytest.raises(ModelError, match="no moving geom matches 'floor'"):
-        find_hulls(vehicle(), "floor")
+        find_hulls(vehicle(), Selection(geoms="floor"))
     with pytest.raises(ModelError, match="an empty choice of geoms displaces nothing"):
-        find_hulls(vehicle(), [])
+        find_hulls(vehicle(), Selection(geoms=[]))
 
 
 def test_a_model_without_a_displacing_geom_is_refused():
@@ -159,13 +159,15 @@ def test_flooded_geoms_displace_in_part_and_what_is_solid_in_them_wholly():
     assert dict(zip(loads.names, loads.hull.volume.tolist(), strict=True)) == pytest.approx(
         {"duct": 0.25 * 0.032, "pod": 0.008, "mast": 0.008}
     )
-    assert Buoyancy(model, water, fill="duct=1").evaluate(data).total.volume == pytest.approx(
-        0.04 + 0.008
-    )
+    assert Buoyancy(model, water, selection=Selection(fill="duct=1")).evaluate(
+        data
+    ).total.volume == pytest.approx(0.04 + 0.008)
     # cut by a wave, each force is the same part
     wave = Water(waves=RegularWave(amplitude=0.05, wavelength=1.0), level=0.02)
     hollow, solid = (
-        Buoyancy(model, wave, geoms="duct", fill=f"duct={part}").evaluate(data).hull
+        Buoyancy(model, wave, selection=Selection(geoms="duct", fill=f"duct={part}"))
+        .evaluate(data)
+        .hull
         for part in (0.25, 1)
     )
     assert hollow.volume == pytest.approx(0.25 * solid.volume, rel=1e-12)
@@ -178,7 +180,9 @@ def test_each_method_knows_parts(method):
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
     whole, part = (
-        Buoyancy(model, Water(level=1.0), fill=f"{fill}", method=method).evaluate(data).hull
+        Buoyancy(model, Water(level=1.0), selection=Selection(fill=f"{fill}"), method=method)
+        .evaluate(data)
+        .hull
         for fill in (1, 0.3)
     )
     assert part.volume == pytest.approx(0.3 * whole.volume)
@@ -188,7 +192,7 @@ def test_each_method_knows_parts(method):
 def test_a_geom_may_displace_as_its_convex_hull():
     box = shapes.box((1.0, 0.5, 0.3))
     tub = mesh_model(box.vertices, box.faces[box.area_vectors[:, 2] <= 0.0])
-    (hull,) = find_hulls(tub, hull="tub=convex")
+    (hull,) = find_hulls(tub, selection=Selection(hull="tub=convex"))
     assert hull.mesh.volume == pytest.approx(1.2, rel=1e-6)
 
 
@@ -210,7 +214,7 @@ def test_a_geom_may_displace_as_its_convex_hull():
 )
 def test_choices_that_make_no_sense_are_told(options, told):
     with pytest.raises(ModelError, match=told):
-        find_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.5, turn=0)), **options)
+        find_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.5, turn=0)), Selection(**options))
 
 
 @pytest.mark.parametrize("turn", [0, 180])

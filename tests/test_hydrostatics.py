@@ -15,6 +15,7 @@ from buoyancy_mj import (
     BuoyancyWarning,
     ModelError,
     RegularWave,
+    Selection,
     Water,
     hydrostatics,
     repair,
@@ -298,7 +299,7 @@ def forces_at(model, qpos):
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
     mujoco.mj_comPos(model, data)
-    loads = Buoyancy(model, drag=None).evaluate(data)
+    loads = Buoyancy(model, damping=None).evaluate(data)
     centre = data.subtree_com[1]
     mass = model.body_mass.sum()
     hull = loads.hull
@@ -360,7 +361,10 @@ def test_an_articulated_vehicle_is_measured_at_its_joint_angles():
 
 def test_flooded_parts_count_in_part():
     geoms = '<geom name="pod" type="box" size="1 .5 .3" mass="300"/>'
-    whole, part = (hydrostatics(vessels.of_geoms(geoms), fill=fill) for fill in (None, "pod=0.5"))
+    whole, part = (
+        hydrostatics(vessels.of_geoms(geoms), selection=Selection(fill=fill))
+        for fill in (None, "pod=0.5")
+    )
     assert part.volume == pytest.approx(0.5 * whole.volume, rel=1e-12)
     assert part.waterplane_area == pytest.approx(0.5 * whole.waterplane_area, rel=1e-12)
     assert part.BMt == pytest.approx(whole.BMt, rel=1e-12)
@@ -442,7 +446,7 @@ def test_of_several_vehicles_one_is_named():
             r"qpos has shape \(3,\); it must be 7 finite coordinates of the model, or position and",
         ),
         ("", {"qpos": [0, 0, math.nan, 1, 0, 0, 0]}, "must be 7 finite coordinates"),
-        ("", {"geoms": "keel"}, "no moving geom matches 'keel'"),
+        ("", {"selection": Selection(geoms="keel")}, "no moving geom matches 'keel'"),
     ],
 )
 def test_what_makes_no_sense_is_told(options, arguments, message):

@@ -10,7 +10,15 @@ import trimesh
 from scipy.integrate import cumulative_trapezoid
 from typer.testing import CliRunner
 
-from buoyancy_mj import BuoyancyWarning, Water, equilibrium, hydrostatics, righting_arm
+from buoyancy_mj import (
+    BuoyancyWarning,
+    Selection,
+    Water,
+    equilibria,
+    equilibrium,
+    hydrostatics,
+    righting_arm,
+)
 from buoyancy_mj.cli import app
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.inspection.report import sections, to_json, to_markdown
@@ -117,7 +125,7 @@ def test_the_numbers_are_those_of_the_library():
     model = vessels.of_geoms('<geom type="capsule" size=".3 1" euler="0 90 0"/>', HEAVY_BELOW)
     found = only(model)
     assert found.rest.qpos == pytest.approx(equilibrium(model).qpos)
-    assert len(found.rests) == len(equilibrium(model, all=True))
+    assert len(found.rests) == len(equilibria(model))
     arm = righting_arm(model, start=found.rest.qpos)
     assert found.righting.gz == pytest.approx(arm.gz, abs=1e-9)
 
@@ -212,7 +220,7 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
     (floating,) = found.floating
     assert floating.total.displaced == pytest.approx(8.0)
     # as its convex hull it displaces
-    convex = inspect_model(spec.compile(), hull="tub=convex")
+    convex = inspect_model(spec.compile(), selection=Selection(hull="tub=convex"))
     assert convex.problems == ()
     assert convex.parts[0].convex
     assert convex.floating[0].total.displaced == pytest.approx(72.0, rel=1e-6)
@@ -231,7 +239,9 @@ def test_what_does_not_displace_says_why():
         "hull": "collision geom",
         "paint": "visual; its body has collision geoms",
     }
-    assert {p.name: p.displaces for p in inspect_model(model, geoms="paint").parts}["hull"] is False
+    assert {
+        p.name: p.displaces for p in inspect_model(model, selection=Selection(geoms="paint")).parts
+    }["hull"] is False
 
 
 def test_overlaps_between_bodies_are_told():

@@ -542,7 +542,7 @@ def auv():
 def test_forces_of_each_mesh_and_their_resultant_move_a_body_alike(auv, method):
     model, data = auv
     water = Water(waves=RegularWave(0.05, frequency=0.5))
-    loads = Buoyancy(model, water, drag=None, method=method).evaluate(data)
+    loads = Buoyancy(model, water, damping=None, method=method).evaluate(data)
     each, one = np.zeros((2, model.nv))
     for body, centroid, force in zip(
         [1] * len(loads.names), loads.hull.centroid, loads.hull.force, strict=True
@@ -644,8 +644,8 @@ def test_the_exact_method_is_the_default_everywhere():
     scene = read_scene(catalog.scenes()["auv_waves"])
     assert scene.method == Exact()
     simulation = Simulation(scene)
-    assert simulation.buoyancy.method == Exact()
-    assert Buoyancy(simulation.model).method == Exact()
+    assert simulation.buoyancy.settings.method == Exact()
+    assert Buoyancy(simulation.model).settings.method == Exact()
     assert simulation.summary().method == "exact"
 
 

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mujoco import batch
 
-from buoyancy_mj import Buoyancy, Drag, EngineError, ModelError, RegularWave, Water
+from buoyancy_mj import Buoyancy, Damping, EngineError, ModelError, RegularWave, Silhouette, Water
 from buoyancy_mj.engine import layout, native
 from buoyancy_mj.kernels import wrenches
 from buoyancy_mj.kernels.entries import passive as kernel
@@ -170,7 +170,7 @@ def test_several_waters_act_each_on_its_own_model():
 
 def test_installed_around_another_and_again_inside_it_acts_once():
     (model, data), (other, _) = raft(), raft()
-    one, two = Buoyancy(model, drag=None), Buoyancy(other)
+    one, two = Buoyancy(model, damping=None), Buoyancy(other)
     with one.installed():
         mujoco.mj_forward(model, data)
         once = data.qfrc_passive.copy()
@@ -344,7 +344,7 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
         buoyancy = (
             None
             if not change_after_construction
-            else Buoyancy(model, SEA, drag=Drag(coefficient=100.0))
+            else Buoyancy(model, SEA, damping=Damping(viscous=Silhouette(coefficient=100.0)))
         )
         model.body_mass[:] *= 0.5
         model.body_inertia[:] *= 0.5
@@ -352,7 +352,9 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
         model.opt.gravity[2] = -5.0
         mujoco.mj_setConst(model, data)
         # linear damping is estimated from gravity
-        buoyancy = buoyancy or Buoyancy(model, SEA, drag=Drag(coefficient=100.0))
+        buoyancy = buoyancy or Buoyancy(
+            model, SEA, damping=Damping(viscous=Silhouette(coefficient=100.0))
+        )
         buoyancy._acting.damping.linear[:] = 1.0
         with buoyancy.installed(native=True):
             for _ in range(50):

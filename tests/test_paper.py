@@ -34,7 +34,7 @@ def table(path):
 
 
 def test_the_hourglass_is_the_one_that_ships_and_has_its_closed_form():
-    (hull,) = find_hulls(solids.model_of("hourglass"), None)
+    (hull,) = find_hulls(solids.model_of("hourglass"))
     mesh = solids.hourglass()
     assert hull.mesh.volume == pytest.approx(mesh.volume, rel=1e-6)
     assert len(hull.mesh.vertices) == len(mesh.vertices)
@@ -123,7 +123,7 @@ def test_linear_damping_acts_on_velocity_relative_to_the_world():
     # a body far above the water falls as v = g / d (1 - exp(-d t)), whatever its mass
     scene = runs.scene_of("hourglass_drop_still")
     scene = dataclasses.replace(
-        scene, start=Start(position=(0, 0, 50.0)), duration=1.0, timestep=1e-3, drag=None
+        scene, start=Start(position=(0, 0, 50.0)), duration=1.0, timestep=1e-3, damping=None
     )
     heights = np.array([m.height for m in runs.run(scene, Exact(), mass=3.0, rate=4.0)])
     times = 1e-3 * np.arange(len(heights))

@@ -18,7 +18,7 @@ from buoyancy_mj import (
     Buoyancy,
     BuoyancyWarning,
     ConvexHull,
-    Drag,
+    Damping,
     EngineError,
     Exact,
     JonswapSea,
@@ -30,6 +30,8 @@ from buoyancy_mj import (
     RegularWave,
     Scene,
     Sections,
+    Selection,
+    Silhouette,
     Simulation,
     Water,
     WaterError,
@@ -38,7 +40,8 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.engine import plugin
 from buoyancy_mj.engine.callbacks import PLUGIN
-from buoyancy_mj.settings.settings import Settings, parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.settings import Settings
 
 SEA = Water(
     density=1025.0,
@@ -123,7 +126,7 @@ def test_bodies_join_the_instance_they_name_and_take_along_what_is_welded_to_the
 
 def test_several_instances_have_water_of_their_own():
     model = compiled(
-        sea("salt", density=2000, drag="false") + sea("oil", density=900, drag="false"),
+        sea("salt", density=2000, damping="false") + sea("oil", density=900, damping="false"),
         two='<plugin instance="oil"/>',
     )
     data = mujoco.MjData(model)
@@ -189,10 +192,10 @@ def test_the_water_of_an_unknown_instance_is_told():
         ({"method": "exat"}, "unknown kind 'exat'; did you mean 'exact'"),
         ({"method": "sections rule=guess"}, "rule is 'guess'"),
         (
-            {"drag": "coefficient=-2"},
+            {"damping": "coefficient=-2"},
             "coefficient is -2.0; it must be a finite number of at least 0",
         ),
-        ({"drag": "much"}, "drag is 'much'; needed is a table"),
+        ({"damping": "much"}, "damping: unknown kind 'much'; possible: none, panels, silhouette"),
         ({"geoms": "keel*"}, r"no moving geom matches 'keel\*'; possible: .*hull"),
         ({"salt": "1"}, "unrecognized attribute 'plugin:salt'"),
     ],
@@ -258,14 +261,16 @@ METHOD = st.sampled_from(
     level=st.floats(-10, 10),
     current=st.tuples(*[st.floats(-3, 3)] * 3),
     method=METHOD,
-    drag=st.sampled_from([None, Drag(), Drag(coefficient=0.7)]),
+    damping=st.sampled_from([None, Damping(), Damping(viscous=Silhouette(coefficient=0.7))]),
     geoms=st.sampled_from([None, ("hull*", "group:2")]),
 )
 def test_what_is_written_into_a_model_is_read_back_to_the_last_bit(
-    waves, density, level, current, method, drag, geoms
+    waves, density, level, current, method, damping, geoms
 ):
     water = Water(density=density, level=level, waves=waves, current=current)
-    written = Settings(water=water, method=method, drag=drag, geoms=geoms)
+    written = Settings(
+        water=water, method=method, damping=damping, selection=Selection(geoms=geoms)
+    )
     read = parse_plugin_config(write_plugin_config(written), "here")
     assert np.array_equal(read.water.rows, water.rows)
     assert dataclasses.replace(read, water=water) == written
@@ -302,7 +307,9 @@ def test_waves_and_methods_that_a_model_cannot_hold_are_refused():
 
 def test_a_saved_model_keeps_its_water(tmp_path):
     spec = mujoco.MjSpec.from_string(PLAIN)
-    add_water(spec, SEA, method=Sections(step=0.02), drag=Drag(coefficient=0.8))
+    add_water(
+        spec, SEA, method=Sections(step=0.02), damping=Damping(viscous=Silhouette(coefficient=0.8))
+    )
     model = spec.compile()
     end = stepped(model).qpos
     path = tmp_path / "floating.xml"
@@ -386,7 +393,7 @@ def test_data_stepped_with_another_model_are_in_its_water():
 
 
 def test_geoms_that_are_resized_in_place_displace_what_they_are_then():
-    model = with_water(Water(), drag=None)
+    model = with_water(Water(), damping=None)
     data = mujoco.MjData(model)
     data.qpos[2] = -3.0
     mujoco.mj_forward(model, data)
@@ -448,7 +455,7 @@ def test_a_batch_with_masses_of_their_own_moves_as_models_with_those_masses():
 def test_a_batch_with_geoms_of_their_own_displaces_what_each_has():
     spec = mujoco.MjSpec.from_string(PLAIN)
     spec.delete(spec.body("lid"))
-    add_water(spec, drag=None)
+    add_water(spec, damping=None)
     model = spec.compile()
     many = batch.Batch(model, 3, nthread=2)
     many.expand("geom_size")[:] *= np.array([1.0, 1.5, 2.0])[:, None, None]
@@ -602,7 +609,7 @@ def test_a_scene_runs_where_passive_forces_are_skipped(tmp_path):
 
 def test_what_the_water_refuses_is_told_as_ours(tmp_path):
     with pytest.raises(ModelError, match="no moving geom matches 'nothing'"):
-        Simulation(scene_of(tmp_path, PLAIN, geoms=("nothing",)))
+        Simulation(scene_of(tmp_path, PLAIN, selection=Selection(geoms="nothing")))
     open_box = """<mujoco><asset>
     <mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1" face="0 2 1 0 1 3 0 3 2" inertia="shell"/></asset>
     <worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><geom type="mesh" mesh="m"/></body>

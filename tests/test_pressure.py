@@ -217,7 +217,7 @@ def floater(draft, period, pressure):
     data.qpos[0] = amplitude
     omega, natural = 2 * math.pi / period, math.sqrt(9.81 / draft)
     times, heights = [], []
-    with Buoyancy(model, water, drag=None, pressure=pressure).installed():
+    with Buoyancy(model, water, damping=None, pressure=pressure).installed():
         while data.time < 6 * period:
             times.append(data.time)
             heights.append(data.qpos[0])
@@ -278,8 +278,8 @@ def test_it_is_a_named_cause_and_the_hulls_add_up(pressure):
     model = mujoco.MjModel.from_xml_string(MODEL)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    plain = Buoyancy(model, SEA, drag=None).evaluate(data)
-    water = Buoyancy(model, SEA, drag=None, pressure=pressure)
+    plain = Buoyancy(model, SEA, damping=None).evaluate(data)
+    water = Buoyancy(model, SEA, damping=None, pressure=pressure)
     loads = water.evaluate(data)
     assert list(loads.by_cause) == ["buoyancy", "wave_pressure"]
     assert loads.by_cause["buoyancy"] == pytest.approx(plain.by_cause["buoyancy"], abs=1e-12)

@@ -8,12 +8,13 @@ import pytest
 
 from buoyancy_mj import (
     BuoyancyWarning,
+    Damping,
     DivergenceError,
-    Drag,
     LevelOscillation,
     ModelError,
     RegularWave,
     SceneError,
+    Silhouette,
     Simulation,
     read_scene,
 )
@@ -57,7 +58,7 @@ def test_a_scene_is_read_into_what_it_says(folder):
     scene = read_scene(folder / "scene.toml")
     assert scene.water.density == 1025.0
     assert scene.water.waves == (RegularWave(0.1, period=2.0), LevelOscillation(0.2, 0.1))
-    assert scene.drag == Drag()
+    assert scene.damping == Damping()
     assert (scene.duration, scene.timestep, scene.record_rate) == (0.5, 0.01, 60.0)
 
 
@@ -71,10 +72,13 @@ def test_a_scene_is_read_into_what_it_says(folder):
         ("water.waves=[]", lambda s: s.water.waves == ()),
         ("start.position=[1, 2, 3]", lambda s: s.start.position == (1.0, 2.0, 3.0)),
         ("start.roll=0.5", lambda s: s.start.roll == 0.5),
-        ("drag=false", lambda s: s.drag is None),
-        ("drag.coefficient=0.8", lambda s: s.drag == Drag(coefficient=0.8)),
+        ("damping=false", lambda s: s.damping is None),
+        (
+            "damping.coefficient=0.8",
+            lambda s: s.damping == Damping(viscous=Silhouette(coefficient=0.8)),
+        ),
         ("integrator=RK4", lambda s: s.integrator == "RK4"),
-        ('geoms=["hull*", "group:2"]', lambda s: s.geoms == ("hull*", "group:2")),
+        ('geoms=["hull*", "group:2"]', lambda s: s.selection.geoms == ("hull*", "group:2")),
         ("vehicle=sauvc_auv", lambda s: s.vehicle == "sauvc_auv"),
     ],
 )
@@ -87,7 +91,7 @@ def test_any_field_can_be_set(folder, setting, look):
     [
         (
             "durations=2",
-            "unknown key 'durations'; did you mean 'duration'? possible: added_mass, coefficients, cog_shift, drag",
+            "unknown key 'durations'; did you mean 'duration'? possible: added_mass, coefficients, cog_shift, damping",
         ),
         (
             "water.densty=2",
@@ -130,8 +134,8 @@ def test_any_field_can_be_set(folder, setting, look):
         ("start.position=[1, 2, nan]", "start: position is nan; needed is a number"),
         ("start.roll=inf", "every number must be finite"),
         (
-            "drag.coefficient=-1",
-            "drag coefficient is -1.0; it must be a finite number of at least 0",
+            "damping.coefficient=-1",
+            "damping coefficient is -1.0; it must be a finite number of at least 0",
         ),
         ("geoms=hull", "geoms is 'hull'; needed is a list of words"),
         ("duration", "'duration' is no setting; write KEY=VALUE"),
@@ -407,7 +411,7 @@ def test_the_frames_attitude_is_roll_pitch_yaw(folder):
 
 def test_energy_of_a_frame_is_kept_without_drag(folder):
     settings = [
-        "drag=false",
+        "damping=false",
         "water.waves=[]",
         "start.position=[0,0,0.2]",
         "start.roll=0.4",

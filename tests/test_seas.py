@@ -22,7 +22,8 @@ from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels import waves as kernels
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes.scene import scene_from_table
-from buoyancy_mj.settings.settings import Settings, parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.submersion.exact import PackedHulls
 from tests import naive, vessels
 

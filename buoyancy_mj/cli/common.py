@@ -14,6 +14,8 @@ import typer
 from rich.console import Console
 
 from buoyancy_mj.errors import BuoyancyError
+from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.records import field_docs
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import Scene, read_scene
 
@@ -34,17 +36,16 @@ SET = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Any field, as water.waves.0.amplitude=0.1."),
 ]
+_SELECTION = field_docs(Selection)
 GEOMS = Annotated[
     list[str] | None,
-    typer.Option(help="Which geoms displace water: name globs ('hull*') or group:N."),
+    typer.Option(help=_SELECTION["geoms"]),
 ]
 HULL = Annotated[
     list[str] | None,
-    typer.Option(help="Geoms that displace as their convex hull: 'frame*=convex', or 'convex'."),
+    typer.Option(help=_SELECTION["hull"]),
 ]
-FILL = Annotated[
-    list[str] | None, typer.Option(help="Flooded geoms, and the part that displaces: 'frame*=0.1'.")
-]
+FILL = Annotated[list[str] | None, typer.Option(help=_SELECTION["fill"])]
 METHOD = Annotated[
     str | None,
     typer.Option(help="How the submersion is found: exact (the default), convex_hull or sections."),

@@ -22,12 +22,13 @@ from buoyancy_mj.cli.common import (
 )
 from buoyancy_mj.errors import ModelError, SceneError
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
+from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.inspection import report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import compile_spec, read_vehicle
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.settings import water_from_table
+from buoyancy_mj.settings.toml import water_from_table
 
 _MODEL = Annotated[str, typer.Argument(help="MJCF, URDF, or the name of a model that ships.")]
 _WATER = Annotated[
@@ -70,9 +71,8 @@ def inspect_(
     spec = read_vehicle(path)
     whole = compile_spec(spec, path)
     with err.status("inspecting"):
-        found = inspect_model(
-            whole, _water(water), geoms=geoms, hull=hull, fill=fill, title=path.stem
-        )
+        selection = Selection(geoms=geoms, hull=hull, fill=fill)
+        found = inspect_model(whole, _water(water), selection=selection, title=path.stem)
     if as_json:
         print(json.dumps(report.to_json(found), indent=2, allow_nan=False))
     else:
@@ -133,7 +133,7 @@ def ballast_(
     found = ballasts(
         compile_spec(spec, path), _water(water), draft=draft, reserve=reserve, heel=heel, trim=trim, bg=bg,
         masses=[box[:3], box[3:]] if box is not None else masses or "ballast*", foam=foam or "foam*",
-        geoms=geoms, hull=hull, fill=fill,
+        selection=Selection(geoms=geoms, hull=hull, fill=fill),
     )  # fmt: skip
     for one in found.placed:
         x, y, z = one.position.round(6) + 0.0

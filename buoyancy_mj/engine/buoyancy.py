@@ -5,30 +5,31 @@ import functools
 import math
 import threading
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from typing import Unpack
 
 import mujoco
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from buoyancy_mj.engine import callbacks, passes
 from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.engine.native import Native, Record
-from buoyancy_mj.errors import BuoyancyWarning, EngineError, MethodError, ModelError, choices
+from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.kernels.entries.passive import Pressure
 from buoyancy_mj.loads.added_mass import resolve_added_mass
-from buoyancy_mj.loads.drag import Drag, resolve_damping
+from buoyancy_mj.loads.drag import resolve_damping
 from buoyancy_mj.loads.loads import Loads, Portion
+from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.submersion.exact import Exact
-from buoyancy_mj.submersion.methods import Method, parse_method
+from buoyancy_mj.settings.settings import Options, Settings, settings_with
 
 
-class Buoyancy:
+class Buoyancy(ReadOnly):
     """Archimedes' force on every hull of a model, and drag on its bodies, as a callback of MuJoCo.
 
     The force rho g V acts upward at the centroid of each hull's submerged volume. It enters through
@@ -41,20 +42,9 @@ class Buoyancy:
 
     Args:
         model: any MuJoCo model with bodies that move.
-        water: fresh and still at z = 0 if None.
-        geoms: which geoms displace water, see `hulls.find_hulls`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which flood, and displace in part, likewise.
-        bodies: indices of the bodies whose geoms may; None for all.
-        pressure: what the pressure in waves is taken for: "archimedes" for rho g V upward, as in the
-            source paper; "hydrostatic" for that of the depth under the surface, which pushes along the
-            slope too; "froude-krylov" for that of linear waves, which fades with depth. See `kernels.waves.head`.
-        drag: how damping is estimated; None for none.
-        added_mass: "model" for what the model's `<custom>` states, numerics 'added_mass:BODY' with 6 or 36
-            numbers; "estimate" for that, and an estimate where there is none; "none"; or matrices (6, 6) or
-            diagonals (6,) by the name of the body. See `added_mass`.
-        method: how the submersion is found: "exact", or the source paper's "convex_hull" and
-            "sections", or one of `Exact`, `ConvexHull`, `Sections` with options.
+        water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all options.
+        bodies: indices of the bodies whose geoms may displace; None for all.
+        options: any of the other fields of `Settings`: method, pressure, damping, added_mass, selection.
 
     Raises:
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips an
@@ -66,31 +56,26 @@ class Buoyancy:
     def __init__(
         self,
         model: mujoco.MjModel,
-        water: Water | None = None,
+        water: Water | Settings | None = None,
         *,
-        geoms: str | Sequence[str] | None = None,
-        hull: str | Sequence[str] | None = None,
-        fill: str | Sequence[str] | None = None,
         bodies: Sequence[int] | None = None,
-        pressure: str = "archimedes",
-        drag: Drag | None = Drag(),
-        added_mass: str | Mapping[str, ArrayLike] | None = "model",
-        method: str | Method = "exact",
+        **options: Unpack[Options],
     ) -> None:
         self.model = model
-        self.water = water or Water()
-        self.drag = drag
-        self.method = parse_method(method)
-        self.pressure = parse_pressure(pressure, self.method)
+        """The model."""
+        self.settings = settings_with(water, options)
+        """All options."""
+        self.water = self.settings.water
+        """The sea."""
         callbacks.refuse_actuation(model)
         _refuse_sleep(model)
         _ = self.gravity
-        self.hulls = find_hulls(model, geoms, bodies, hull=hull, fill=fill)
+        self.hulls = find_hulls(model, self.settings.selection, bodies)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
         frames = [hull.geom for hull in self.hulls]
         turns = [hull.body_from_geom for hull in self.hulls]
-        self.packed = self.method.pack(
+        self.packed = self.settings.method.pack(
             [hull.mesh for hull in self.hulls],
             frames,
             self._owners,
@@ -99,15 +84,18 @@ class Buoyancy:
             [hull.fill for hull in self.hulls],
         )
         _doubt(model, self.water, self.hulls)
-        self.added_mass = resolve_added_mass(model, self.hulls, self.water.density, added_mass)
+        self.added_mass = resolve_added_mass(
+            model, self.hulls, self.water.density, self.settings.added_mass
+        )
         """Added mass of those bodies that have one."""
-        damping = resolve_damping(drag, model, self.hulls, self.water.density) if drag else None
-        if damping is not None and len(damping.panels) and not isinstance(self.method, Exact):
-            raise MethodError(
-                f"drag by panels needs the method 'exact', not '{self.method.name}', which knows no triangles"
-            )
+        damping = self.settings.damping
         self._acting = LoadModel(
-            self.water, self.packed, self._owners, self.pressure, damping, self.added_mass
+            self.water,
+            self.packed,
+            self._owners,
+            Pressure[self.settings.pressure.replace("-", "_")],
+            resolve_damping(damping, model, self.hulls, self.water.density) if damping else None,
+            self.added_mass,
         )
         self.causes = self._acting.causes
         """Names of the loads that act."""
@@ -123,6 +111,7 @@ class Buoyancy:
         self._before, self._after = np.zeros((2, model.nv))
         self._last_data = 0
         self._lock = threading.RLock()
+        self._seal("make another Buoyancy(model, water, ...)")
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Add the water's forces to `data.qfrc_passive`: an `mjcb_control`, or a call between mj_step1 and mj_step2.
@@ -285,22 +274,6 @@ class Buoyancy:
                 f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: set <option gravity='0 0 -9.81'/>"
             )
         return -float(z)
-
-
-def parse_pressure(name: str, method: Method) -> Pressure:
-    """The kind of pressure of a name.
-
-    Raises:
-        MethodError: there is none, or the method knows no pressure.
-    """
-    kinds = {kind.name.replace("_", "-"): kind for kind in Pressure}
-    if name not in kinds:
-        raise MethodError(f"pressure is '{name}'; {choices(name, kinds)}")
-    if kinds[name] != Pressure.archimedes and not isinstance(method, Exact):
-        raise MethodError(
-            f"pressure '{name}' needs the method 'exact', not '{method.name}', which knows volumes alone"
-        )
-    return kinds[name]
 
 
 def _doubt(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:

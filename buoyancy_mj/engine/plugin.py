@@ -16,7 +16,7 @@ import functools
 import hashlib
 import threading
 import warnings
-from collections.abc import Sequence
+from typing import Unpack
 
 import mujoco
 import numpy as np
@@ -28,13 +28,14 @@ from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, choices
 from buoyancy_mj.kernels.entries import passive as kernel
 from buoyancy_mj.kernels.entries import plugin_hooks as entries
 from buoyancy_mj.kernels.entries.closures import Closure
-from buoyancy_mj.loads.drag import Drag
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.settings import KEYS, Settings, parse_plugin_config, write_plugin_config
-from buoyancy_mj.submersion.methods import Method, parse_method
+from buoyancy_mj.settings.config import KEYS, parse_plugin_config, write_plugin_config
+from buoyancy_mj.settings.settings import Options, Settings, settings_with
 
 KEPT = 32
 """Waters that are kept although no data use them, lest a model whose data come and go be read again and again."""
+REMEMBERED = 1024
+"""Settings that are remembered; what is older is read from its texts."""
 _READ = (
     "geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group", "geom_size", "geom_pos",
     "geom_quat", "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face", "body_parentid",
@@ -57,30 +58,18 @@ _INT, _WORD = ctypes.c_int, ctypes.c_int64
 
 def add_water(
     spec: mujoco.MjSpec,
-    water: Water | None = None,
+    water: Water | Settings | None = None,
     *,
-    method: str | Method = "exact",
-    pressure: str = "archimedes",
-    drag: Drag | None = Drag(),
-    added_mass: str = "model",
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
     instance: str = "sea",
+    **options: Unpack[Options],
 ) -> None:
     """Put water into a model: compiled from `spec`, it floats wherever MuJoCo steps it, and its saved MJCF keeps the water.
 
     Args:
         spec: the model; all its bodies that move are in the water, but those that joined another instance.
-        water: fresh and still at z = 0 if None.
-        method: how the submersion is found, see `Buoyancy`.
-        pressure: what the pressure in waves is taken for, likewise.
-        drag: how damping is estimated; None for none.
-        added_mass: "model", "estimate" or "none", likewise.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all options.
         instance: name of the plugin's instance in the model.
+        options: any of the other fields of `Settings`: method, pressure, damping, added_mass, selection.
 
     Raises:
         ModelError: the model has an instance of that name.
@@ -92,21 +81,12 @@ def add_water(
         raise ModelError(
             f"the model already has a plugin instance '{instance}'; give the water another name (instance=)"
         )
-    chosen = {
-        name: None if words is None else (words,) if isinstance(words, str) else tuple(words)
-        for name, words in (("geoms", geoms), ("hull", hull), ("fill", fill))
-    }
-    settings = Settings(
-        water=water or Water(),
-        method=parse_method(method),
-        pressure=pressure,
-        drag=drag,
-        added_mass=added_mass,
-        **chosen,
-    )
+    settings = settings_with(water, options)
+    config = write_plugin_config(settings)
+    _remember(config, settings)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
-    plugin.config = write_plugin_config(settings)
+    plugin.config = config
 
 
 def water_in(model: mujoco.MjModel, instance: str | None = None) -> Buoyancy:
@@ -143,6 +123,21 @@ _lock = threading.RLock()
 _waters: dict[bytes, Buoyancy] = {}
 """By what they are made of, the last used last."""
 _reading = threading.local()
+_remembered: dict[str, Settings] = {}
+"""Settings that this process has put into models, by the spelling of their texts, the last one last."""
+
+
+def _remember(config: dict[str, str], settings: Settings) -> None:
+    """Keep settings that go into a model, so that they need not be read back from their texts."""
+    with _lock:
+        _remembered[_spelling(config)] = settings
+        for oldest in list(_remembered)[:-REMEMBERED]:
+            del _remembered[oldest]
+
+
+def _spelling(texts: dict[str, str]) -> str:
+    """The texts of a configuration in one."""
+    return repr(sorted((key, text) for key, text in texts.items() if text))
 
 
 def _resolve(model: int, data: int, instance: int) -> None:
@@ -186,23 +181,13 @@ def _made(model: mujoco.MjModel, instance: int) -> Buoyancy:
             "enable one of them, <flag damper='enable'/>"
         )
     name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_PLUGIN, instance) or str(instance)
-    settings = parse_plugin_config(
-        _texts(model._address, instance), f"plugin '{PLUGIN}', instance '{name}'"
-    )
+    texts = _texts(model._address, instance)
+    settings = _remembered.get(_spelling(texts))
+    if settings is None:
+        settings = parse_plugin_config(texts, f"plugin '{PLUGIN}', instance '{name}'")
     # nobody lends this one as a control callback
     model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
-    return Buoyancy(
-        model,
-        settings.water,
-        geoms=settings.geoms,
-        hull=settings.hull,
-        fill=settings.fill,
-        bodies=_joined(model, instance),
-        pressure=settings.pressure,
-        drag=settings.drag,
-        added_mass=settings.added_mass,
-        method=settings.method,
-    )
+    return Buoyancy(model, settings, bodies=_joined(model, instance))
 
 
 def _key(model: int, instance: int) -> bytes:

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning, MeshError
 from buoyancy_mj.hulls.hull import Hull, join_overlapping
-from buoyancy_mj.hulls.selection import SOLIDS, geom_name, judge_geoms, parse_fills, parse_shapes
+from buoyancy_mj.hulls.selection import (
+    SOLIDS,
+    Selection,
+    geom_name,
+    judge_geoms,
+    parse_fills,
+    parse_shapes,
+)
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.repair import Diagnosis, diagnose, wrap_convex
@@ -21,32 +28,25 @@ _MESH, _BOX, _SPHERE, _ELLIPSOID, _CYLINDER, _CAPSULE = SOLIDS
 
 def find_hulls(
     model: mujoco.MjModel,
-    geoms: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
     bodies: Sequence[int] | None = None,
-    *,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
 ) -> tuple[Hull, ...]:
     """The hulls of a model; geoms of one body that overlap are joined into one.
 
     Args:
         model: any model.
-        geoms: which geoms displace water, name globs or group:N, see `hulls.judge_geoms`.
+        selection: which geoms displace water, and as what.
         bodies: indices of the bodies whose geoms may; None for all.
-        hull: which geoms displace as their convex hull, words 'PATTERN=convex'.
-        fill: of geoms that flood, the part of the volume that displaces, words 'PATTERN=0.1'.
 
-    Each choice may stand in the model's `<custom>`, as a text 'buoyancy_geoms', 'buoyancy_hull' or
-    'buoyancy_fill'. What was mended in a mesh is told as `BuoyancyWarning`.
+    A repair of a mesh is reported as a `BuoyancyWarning`.
 
     Raises:
         ModelError: no geom is left, or a pattern matches none.
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
-    chosen = [verdict.geom for verdict in judge_geoms(model, geoms, bodies) if verdict.displaces]
-    return build_hulls(
-        model, chosen, parse_shapes(model, chosen, hull), parse_fills(model, chosen, fill)
-    )
+    chosen = [v.geom for v in judge_geoms(model, selection, bodies) if v.displaces]
+    shapes = parse_shapes(model, chosen, selection.hull)
+    return build_hulls(model, chosen, shapes, parse_fills(model, chosen, selection.fill))
 
 
 def build_hulls(

@@ -20,6 +20,33 @@ SOLIDS = tuple(
 """Types of geoms that bound a volume."""
 
 
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Selection:
+    """Which geoms of a model displace water, and as what.
+
+    A pattern is a name glob such as 'hull*', or 'group:2'. Each field takes one text or several, and
+    None leaves the choice to the model: to its `<custom>` texts 'buoyancy_geoms', 'buoyancy_hull' and
+    'buoyancy_fill', or to the defaults.
+
+    Example:
+        `Selection(geoms=["hull*", "pod"], fill="frame=0.1")`
+    """
+
+    geoms: str | Sequence[str] | None = None
+    """Which geoms displace water: patterns. By default the collision geoms of each body, or its visual ones if it has none."""
+    hull: str | Sequence[str] | None = None
+    """Which of them displace as their convex hull: 'PATTERN=convex', or 'convex' for all."""
+    fill: str | Sequence[str] | None = None
+    """Which of them flood, and the part of their volume that displaces: 'PATTERN=0.1'."""
+
+    def __post_init__(self) -> None:
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if value is not None:
+                words = (value,) if isinstance(value, str) else tuple(map(str, value))
+                object.__setattr__(self, field.name, words)
+
+
 @dataclasses.dataclass(frozen=True)
 class Verdict:
     """A geom, and whether it displaces water."""
@@ -34,26 +61,28 @@ class Verdict:
 
 def judge_geoms(
     model: mujoco.MjModel,
-    geoms: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
     bodies: Sequence[int] | None = None,
 ) -> tuple[Verdict, ...]:
-    """Every geom of a model with the verdict on it.
+    """Judge every geom of a model: does it displace water, and why.
 
-    Of each moving body the collision geoms (contype or conaffinity not zero) displace water if it
-    has any, otherwise its visual ones. `geoms`, or a text named 'buoyancy_geoms' in the model's
-    `<custom>`, chooses otherwise: name globs, or `group:N`, separated by blanks or commas. Planes,
-    height fields, signed distance fields and what cannot move never displace water.
+    The collision geoms of each moving body (contype or conaffinity not zero) displace water if it has
+    any, otherwise its visual ones. `selection.geoms`, or the model's text 'buoyancy_geoms', chooses
+    otherwise. Planes, height fields, signed distance fields and geoms that cannot move never displace.
 
-    With `bodies` only geoms of those count.
+    Args:
+        model: any model.
+        selection: the user's choice.
+        bodies: indices of the bodies whose geoms may displace; None for all.
 
     Raises:
         ModelError: no geom is left, or a pattern matches none.
     """
     refused = {g: reason for g in range(model.ngeom) if (reason := _refusal(model, g, bodies))}
     solid = [g for g in range(model.ngeom) if g not in refused]
-    words = _words(model, GEOMS, geoms, "geoms")
+    words = _words(model, GEOMS, selection.geoms, "geoms")
     if words is not None:
-        by = "chosen" if geoms is not None else f"chosen by the model's '{GEOMS}'"
+        by = "chosen" if selection.geoms is not None else f"chosen by the model's '{GEOMS}'"
         chosen = {
             g: f"{by}: {word}" for word in reversed(words) for g in _matching(model, solid, word)
         }

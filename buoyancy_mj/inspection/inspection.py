@@ -13,6 +13,7 @@ from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, MeshError
 from buoyancy_mj.hulls.geoms import build_hulls, diagnose_geom, read_geom_mesh
 from buoyancy_mj.hulls.hull import OVERLAP, Hull, find_close_pairs
 from buoyancy_mj.hulls.selection import (
+    Selection,
     Verdict,
     body_name,
     geom_kind,
@@ -153,9 +154,7 @@ def inspect_model(
     model: mujoco.MjModel,
     water: Water | None = None,
     *,
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
     title: str = "model",
 ) -> Inspection:
     """Inspect a model: a mesh that is refused is named and left out, and the rest goes on.
@@ -163,18 +162,17 @@ def inspect_model(
     Args:
         model: any; vehicles on free joints float, others are weighed.
         water: fresh and still at z = 0 if None; waves are left aside.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        selection: which geoms displace water, and as what.
         title: what it is called.
 
     Raises:
         ModelError: no geom displaces water, or a choice that makes no sense.
     """
     sea = water or Water()
-    verdicts = judge_geoms(model, geoms)
+    verdicts = judge_geoms(model, selection)
     chosen = [verdict.geom for verdict in verdicts if verdict.displaces]
-    forms, fills = parse_shapes(model, chosen, hull), parse_fills(model, chosen, fill)
+    forms = parse_shapes(model, chosen, selection.hull)
+    fills = parse_fills(model, chosen, selection.fill)
     problems: list[str] = []
     parts = [
         _part(model, verdict, forms.get(verdict.geom) == "convex", fills, problems)

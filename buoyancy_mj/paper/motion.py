@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.kernels import clip
-from buoyancy_mj.loads.drag import Drag
+from buoyancy_mj.loads.damping import Damping
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.runs import FREQUENCY, SURFACES, run, scene_of, steps, swing
 from buoyancy_mj.paper.statics import DENSITY, METHODS
@@ -186,13 +186,13 @@ def oscillation(quick: bool) -> Result:
     rates = (0.0, 30.0) if quick else (0.0, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
     rows = []
     for surface in ("moving level", "travelling wave"):
-        for drag in (Drag(), None):
+        for damping in (Damping(), None):
             for fraction in fractions:
                 for rate in rates:
                     scene = dataclasses.replace(
                         scene_of("hourglass_drop_waves"),
                         water=SURFACES[surface],
-                        drag=drag,
+                        damping=damping,
                         # the base touches the water
                         start=Start(position=(0.0, 0.0, solids.HALF_HEIGHT)),
                     )
@@ -202,7 +202,7 @@ def oscillation(quick: bool) -> Result:
                     rows.append(
                         (
                             surface,
-                            "estimated" if drag else "none",
+                            "estimated" if damping else "none",
                             fraction,
                             rate,
                             half_range,

@@ -83,7 +83,7 @@ def steps(
         mujoco.mj_setConst(model, mujoco.MjData(model))
     # mass and inertia along and about the joint's axes
     model.dof_damping[:] = rate * model.dof_M0
-    buoyancy = Buoyancy(model, scene.water, drag=scene.drag, method=method)
+    buoyancy = Buoyancy(model, scene.water, damping=scene.damping, method=method)
     # in Python, which leaves what was wet in the method's own results
     with buoyancy.installed(native=False):
         for _ in range(round(scene.duration / scene.timestep)):

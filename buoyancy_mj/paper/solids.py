@@ -68,7 +68,7 @@ def model_of(name: str) -> mujoco.MjModel:
 @functools.cache
 def auv() -> tuple[TriMesh, ...]:
     """The meshes of the SAUVC vehicle that displace water, in the frame of its body."""
-    return tuple(hull.mesh_in_body for hull in find_hulls(model_of("sauvc_auv"), None))
+    return tuple(hull.mesh_in_body for hull in find_hulls(model_of("sauvc_auv")))
 
 
 @functools.cache

@@ -74,17 +74,7 @@ def assemble(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, muj
     if afloat and not skips_passive(spec.option.disableflags):
         # where the plugin cannot be, that was told on import
         with contextlib.suppress(EngineError):
-            add_water(
-                spec,
-                scene.water,
-                method=scene.method,
-                pressure=scene.pressure,
-                drag=scene.drag,
-                added_mass=scene.added_mass,
-                geoms=scene.geoms,
-                hull=scene.hull,
-                fill=scene.fill,
-            )
+            add_water(spec, scene)
     model = compile_spec(spec, path)
     _load(model, scene, bodies)
     try:
@@ -270,10 +260,8 @@ def _place(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int
 
 def _settle(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: int) -> None:
     """Bring each of the vehicle's bodies that float to rest, from where it is."""
-    words = {"hull": scene.hull, "fill": scene.fill}
-    hulls = find_hulls(model, scene.geoms, range(1, bodies), **words)
+    hulls = find_hulls(model, scene.selection, range(1, bodies))
     for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
-        vessel = build_vessel(
-            model, scene.water, data.qpos, body=body_name(model, root), geoms=scene.geoms, **words
-        )
+        name = body_name(model, root)
+        vessel = build_vessel(model, scene.water, data.qpos, body=name, selection=scene.selection)
         data.qpos[:] = find_rest(vessel).qpos

@@ -11,18 +11,16 @@ import mujoco
 
 from buoyancy_mj.errors import SceneError, choices
 from buoyancy_mj.loads.coefficients import Dataset
-from buoyancy_mj.loads.drag import Drag
-from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.settings import (
-    drag_from_table,
+from buoyancy_mj.settings.config import SELECTION, plain_value
+from buoyancy_mj.settings.settings import Settings
+from buoyancy_mj.settings.tables import build
+from buoyancy_mj.settings.toml import (
+    damping_from_table,
     method_from_table,
-    plain_value,
+    selection_from_table,
     table_of,
     water_from_table,
 )
-from buoyancy_mj.settings.tables import build
-from buoyancy_mj.submersion.exact import Exact
-from buoyancy_mj.submersion.methods import Method
 
 _VECTORS = (
     "cog_shift",
@@ -84,8 +82,8 @@ class Start:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class Scene:
-    """A vehicle, its water, its start and how long to look.
+class Scene(Settings):
+    """A vehicle, its start and how long to look, beside the settings of its water.
 
     Raises:
         SceneError: a value out of its range.
@@ -105,26 +103,10 @@ class Scene:
     """MuJoCo's integrator."""
     record_rate: float = 60.0
     """Frames recorded per simulated second [Hz]."""
-    geoms: tuple[str, ...] | None = None
-    """Which geoms displace water (name globs, group:N); None for the vehicle's own choice."""
-    hull: tuple[str, ...] | None = None
-    """Which geoms displace as their convex hull (PATTERN=convex); None for the vehicle's own choice."""
-    fill: tuple[str, ...] | None = None
-    """Which geoms flood, and the part of their volume that displaces (PATTERN=0.1); None for the vehicle's own choice."""
-    water: Water = Water()
-    """The sea."""
     start: Start = Start()
     """Pose and velocity at time 0."""
-    pressure: str = "archimedes"
-    """What the pressure in waves is taken for, see `Buoyancy`: archimedes, hydrostatic, froude-krylov."""
-    drag: Drag | None = Drag()
-    """How damping is estimated; None for none."""
-    added_mass: str = "model"
-    """Where the added mass of the bodies comes from, see `Buoyancy`: model, estimate, none."""
     coefficients: Dataset | None = None
     """A potential-flow code's dataset of added mass and radiation damping, for bodies that state none themselves."""
-    method: Method = Exact()
-    """How the submersion is found."""
     mass: float | None = None
     """Mass of the whole vehicle [kg], the masses and inertias of its bodies scaled alike; None for its own."""
     cog_shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -135,6 +117,7 @@ class Scene:
     """What relative paths in it start from."""
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         for name, least, most in (
             ("duration", 1e-6, 1e6),
             ("timestep", 1e-7, 1.0),
@@ -153,6 +136,13 @@ class Scene:
             raise SceneError(
                 f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}"
             )
+
+
+KEYS = (
+    *(f.name for f in dataclasses.fields(Scene) if f.name not in ("text", "folder", "selection")),
+    *SELECTION,
+)
+"""Keys of a scene's file."""
 
 
 def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
@@ -185,20 +175,17 @@ def scene_from_table(
     given["start"] = build(
         Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start"
     )
-    given["drag"] = drag_from_table(plain.pop("drag", True), f"{where}: drag")
+    given["damping"] = damping_from_table(plain.pop("damping", True), f"{where}: damping")
     if "coefficients" in plain:
         place = f"{where}: coefficients"
         given["coefficients"] = build(Dataset, table_of(plain.pop("coefficients"), place), place)
     given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
+    patterns = {key: plain.pop(key) for key in SELECTION if key in plain}
+    given["selection"] = selection_from_table(patterns, where)
     # keys of the scene that are tables of their own are still its keys
     for key in plain:
-        known = [
-            field.name
-            for field in dataclasses.fields(Scene)
-            if field.name not in ("text", "folder")
-        ]
-        if key not in known:
-            raise SceneError(f"{where}: unknown key '{key}'; {choices(key, known)}")
+        if key not in KEYS:
+            raise SceneError(f"{where}: unknown key '{key}'; {choices(key, KEYS)}")
     return build(Scene, plain, where, **given)
 
 

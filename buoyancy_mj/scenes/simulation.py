@@ -17,13 +17,14 @@ from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.frames import LAST, Energy, Frame, Summary
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.statics.vessel import PLAUSIBLE
 
 
-class Simulation:
+class Simulation(ReadOnly):
     """A scene, assembled and ready to run once.
 
     Raises:
@@ -43,17 +44,7 @@ class Simulation:
         if plugin_instances(self.model):
             self.buoyancy, self._acting = water_in(self.model), nullcontext
         else:
-            self.buoyancy = Buoyancy(
-                self.model,
-                scene.water,
-                geoms=scene.geoms,
-                hull=scene.hull,
-                fill=scene.fill,
-                pressure=scene.pressure,
-                drag=scene.drag,
-                added_mass=scene.added_mass,
-                method=scene.method,
-            )
+            self.buoyancy = Buoyancy(self.model, scene)
             self._acting = self.buoyancy.installed
         floating = self.buoyancy.floating
         self.vehicle = floating[floating < bodies]
@@ -93,6 +84,7 @@ class Simulation:
         own = np.isin(self.model.geom_bodyid, self.vehicle)
         self._touches = fixed[:, None] & own[None, :]
         self._touches |= self._touches.T
+        self._seal("make another Simulation of a changed scene (dataclasses.replace)")
 
     @property
     def steps(self) -> int:
@@ -240,10 +232,10 @@ class Simulation:
                 "scale of its meshes (a mesh drawn in millimetres wants scale='0.001 0.001 0.001')"
             )
         density, viscosity = self.model.opt.density, self.model.opt.viscosity
-        if (density > 0.0 or viscosity > 0.0) and self.scene.drag is not None:
+        if (density > 0.0 or viscosity > 0.0) and self.scene.damping is not None:
             option = f"density='{density:g}'" if density > 0.0 else f"viscosity='{viscosity:g}'"
             warnings.warn(
-                f"the vehicle sets <option {option}>: MuJoCo's own fluid drag acts as well as ours; leave one out (drag = "
+                f"the vehicle sets <option {option}>: MuJoCo's own fluid drag acts as well as ours; leave one out (damping = "
                 "false in the scene)",
                 BuoyancyWarning,
                 stacklevel=3,

@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
 from buoyancy_mj.hulls.hull import find_close_pairs
-from buoyancy_mj.hulls.selection import GEOMS, body_name
+from buoyancy_mj.hulls.selection import GEOMS, Selection, body_name
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.mesh import to_manifold
 from buoyancy_mj.sea.water import Water
@@ -121,9 +121,7 @@ def ballast(
     foam_density: float = FOAM,
     start: ArrayLike | None = None,
     body: str | None = None,
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
 ) -> Ballast:
     """The least ballast and foam that bring a vessel to rest as wanted, its joints held.
 
@@ -149,9 +147,7 @@ def ballast(
         foam_density: of the foam [kg/m^3].
         start: coordinates of the model (nq,), for its joints; the model's own if None.
         body: name of the root body, where several float; None for the first that has hulls.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        selection: which geoms displace water, and as what.
 
     Raises:
         BallastError: these places cannot do it; the message says what they could.
@@ -170,7 +166,7 @@ def ballast(
             f"draft or reserve, heel, trim and bg are {numbers}, densities {mass_density:g} and {foam_density:g}; all must "
             "be finite, densities positive"
         )
-    vessel = build_vessel(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
+    vessel = build_vessel(model, water, start, body=body, selection=selection)
     pose = _wanted(vessel, draft, heel, trim)
     # foam that lifts less than it weighs there is none
     lifting = [place for place in find_sites(pose, "foam", foam, foam_density) if place.lift > 1.0]

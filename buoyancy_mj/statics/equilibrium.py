@@ -2,8 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
-from typing import Literal, overload
+from collections.abc import Iterator
 
 import mujoco
 import numpy as np
@@ -11,6 +10,7 @@ import trimesh
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.balance import (
     STRIDE,
@@ -55,53 +55,64 @@ class Equilibrium:
         return self.stability == "stable"
 
 
-@overload
-def equilibrium(
-    model: mujoco.MjModel, water: Water | None = ..., start: ArrayLike | None = ..., *, all: Literal[False] = ...,
-    stable: bool = ..., body: str | None = ..., geoms: str | Sequence[str] | None = ...,
-    hull: str | Sequence[str] | None = ..., fill: str | Sequence[str] | None = ...,
-) -> Equilibrium: ...  # fmt: skip
-@overload
-def equilibrium(
-    model: mujoco.MjModel, water: Water | None = ..., start: ArrayLike | None = ..., *, all: Literal[True],
-    stable: bool = ..., body: str | None = ..., geoms: str | Sequence[str] | None = ...,
-    hull: str | Sequence[str] | None = ..., fill: str | Sequence[str] | None = ...,
-) -> tuple[Equilibrium, ...]: ...  # fmt: skip
 def equilibrium(
     model: mujoco.MjModel,
     water: Water | None = None,
     start: ArrayLike | None = None,
     *,
-    all: bool = False,  # noqa: A002
     stable: bool = True,
     body: str | None = None,
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
-) -> Equilibrium | tuple[Equilibrium, ...]:
+    selection: Selection = Selection(),
+) -> Equilibrium:
     """The pose in which a vessel comes to rest, its joints held.
 
-    Found by Newton steps that always lead down, see `statics.find_balance`.
+    It is found by Newton steps that always lead down, see `statics.find_balance`.
 
     Args:
         model: any MuJoCo model with a body that floats.
         water: fresh and still at z = 0 if None; waves are left aside.
         start: coordinates of the model (nq,), or of its free joint alone (7,); the model's own if None.
-        all: every stable pose instead of the one downhill from `start`: from 42 attitudes all round, those of
-            lowest energy first; poses that differ by heading alone, or by rolling without resistance, count once.
         stable: False for the nearest balance, be it a summit or a saddle.
         body: name of the root body, where several float; None for the first that has hulls.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        selection: which geoms displace water, and as what.
 
     Raises:
         EquilibriumError: it sinks; or no balance was found near the start.
         ModelError: see `statics.build_vessel`; or nothing of it is free to float.
         MeshError: a mesh that bounds no volume.
     """
-    vessel = build_vessel(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
-    return find_stable_rests(vessel) if all else find_rest(vessel, stable=stable)
+    return find_rest(
+        build_vessel(model, water, start, body=body, selection=selection), stable=stable
+    )
+
+
+def equilibria(
+    model: mujoco.MjModel,
+    water: Water | None = None,
+    start: ArrayLike | None = None,
+    *,
+    body: str | None = None,
+    selection: Selection = Selection(),
+) -> tuple[Equilibrium, ...]:
+    """Every stable pose of a vessel, its joints held; those of lowest energy first.
+
+    The search starts from 42 attitudes all round. Poses that differ by heading alone, or by rolling
+    without resistance, count once.
+
+    Args:
+        model: any MuJoCo model with a body that floats.
+        water: fresh and still at z = 0 if None; waves are left aside.
+        start: coordinates of the model (nq,), or of its free joint alone (7,), which hold the joints, place
+            and heading; the model's own if None.
+        body: name of the root body, where several float; None for the first that has hulls.
+        selection: which geoms displace water, and as what.
+
+    Raises:
+        EquilibriumError: it sinks.
+        ModelError: see `statics.build_vessel`; or nothing of it is free to float.
+        MeshError: a mesh that bounds no volume.
+    """
+    return find_stable_rests(build_vessel(model, water, start, body=body, selection=selection))
 
 
 def find_rest(vessel: Vessel, *, stable: bool = True) -> Equilibrium:

@@ -2,13 +2,13 @@
 
 import dataclasses
 import math
-from collections.abc import Sequence
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.vessel import Afloat, build_vessel
 
@@ -182,9 +182,7 @@ def hydrostatics(
     qpos: ArrayLike | None = None,
     *,
     body: str | None = None,
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
 ) -> Hydrostatics:
     """Hydrostatics of a vessel where `qpos` has it, floating, submerged or in the air, its joints as they are.
 
@@ -193,15 +191,13 @@ def hydrostatics(
         water: fresh and still at z = 0 if None; waves are left aside.
         qpos: coordinates of the model (nq,), or of the vessel's free joint alone (7,); the model's own if None.
         body: name of the root body, where several float; None for the first that has hulls.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        selection: which geoms displace water, and as what.
 
     Raises:
         ModelError: see `statics.build_vessel`.
         MeshError: a mesh that bounds no volume.
     """
-    vessel = build_vessel(model, water, qpos, body=body, geoms=geoms, hull=hull, fill=fill)
+    vessel = build_vessel(model, water, qpos, body=body, selection=selection)
     return hydrostatics_of(vessel.at(vessel.position, vessel.rotation))
 
 

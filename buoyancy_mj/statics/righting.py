@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices
+from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.balance import find_balance, find_draft
 from buoyancy_mj.statics.hydrostatics import attitude
@@ -86,9 +87,7 @@ def righting_arm(
     *,
     points: Sequence[str] | str = POINTS,
     body: str | None = None,
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
 ) -> RightingArm:
     """The GZ curve of a vessel at the draft that carries its weight, its joints held.
 
@@ -107,9 +106,7 @@ def righting_arm(
         start: upright: coordinates of the model (nq,), or of its free joint alone (7,); the model's own if None.
         points: globs of the sites to watch, as deck edges and downflooding points.
         body: name of the root body, where several float; None for the first that has hulls.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        selection: which geoms displace water, and as what.
 
     Raises:
         EquilibriumError: it sinks, or does not balance at all.
@@ -121,7 +118,7 @@ def righting_arm(
         raise ModelError("heel and axis must be finite angles [rad], at least one of heel")
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
-    vessel = build_vessel(model, water, start, body=body, geoms=geoms, hull=hull, fill=fill)
+    vessel = build_vessel(model, water, start, body=body, selection=selection)
     return curve(vessel, heels, axis=axis, free=trim == "free", points=points)
 
 

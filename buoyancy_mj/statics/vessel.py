@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.selection import Selection, body_name
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
@@ -213,9 +213,7 @@ def build_vessel(
     qpos: ArrayLike | None = None,
     *,
     body: str | None = None,
-    geoms: str | Sequence[str] | None = None,
-    hull: str | Sequence[str] | None = None,
-    fill: str | Sequence[str] | None = None,
+    selection: Selection = Selection(),
 ) -> Vessel:
     """A vessel of a model.
 
@@ -224,18 +222,14 @@ def build_vessel(
         water: fresh and still at z = 0 if None; of waves only their still level counts.
         qpos: coordinates of the model (nq,), or of the root's free joint alone (7,); the model's own if None.
         body: name of the root body, where several float; None for the first that has hulls.
-        geoms: which geoms displace water, see `Buoyancy`.
-        hull: which of them as their convex hull, likewise.
-        fill: and which displace in part, likewise.
+        selection: which geoms displace water, and as what.
 
     Raises:
         ModelError: coordinates of the wrong size or not finite, no such body, no mass, no gravity, gravity that is not
             along -z, no geom that displaces water.
         MeshError: a mesh that bounds no volume.
     """
-    return build_vessel_from_hulls(
-        model, find_hulls(model, geoms, hull=hull, fill=fill), water, qpos, body=body
-    )
+    return build_vessel_from_hulls(model, find_hulls(model, selection), water, qpos, body=body)
 
 
 def build_vessel_from_hulls(

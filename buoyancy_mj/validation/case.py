@@ -85,7 +85,7 @@ def follow(
     """
     data = mujoco.MjData(model)
     start(data)
-    options = {} if drag else {"drag": None}
+    options = {} if drag else {"damping": None}
     times, values = [], []
     with Buoyancy(model, water, pressure=pressure, added_mass=added_mass, **options).installed():  # type: ignore[arg-type]
         while data.time < duration:

@@ -12,7 +12,7 @@ from scipy.special import h1vp
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.loads.added_mass import estimate_added_mass as added_mass_of
-from buoyancy_mj.loads.drag import Drag
+from buoyancy_mj.loads.damping import Damping
 from buoyancy_mj.loads.drag import resolve_damping as damping_of
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import RegularWave
@@ -80,7 +80,7 @@ def drag_coefficients() -> dict[str, float]:
     found = {}
     for name, (geom, axis, area, _) in WHITE.items():
         model = _of(geom)
-        quadratic = damping_of(Drag(), model, find_hulls(model), 1000.0).quadratic[0, axis]
+        quadratic = damping_of(Damping(), model, find_hulls(model), 1000.0).quadratic[0, axis]
         found[name] = float(quadratic / (0.5 * 1000.0 * area))
     return found
 
@@ -182,7 +182,7 @@ def _pile(stoutness: float) -> float:
         # of a disk, pi rho a^2 a metre; a quarter of the body is in the water
         custom=numeric("added_mass", [1000.0 * math.pi * radius**2 * 2.0, 0, 0, 0, 0, 0]),
     )
-    buoyancy = Buoyancy(model, Water(waves=wave), pressure="froude-krylov", drag=None)
+    buoyancy = Buoyancy(model, Water(waves=wave), pressure="froude-krylov", damping=None)
     data = mujoco.MjData(model)
     forces, times = [], np.linspace(0.0, wave.period, 25)
     for data.time in times:
@@ -322,7 +322,7 @@ CASES = (
         "drag_table",
         "Measured drag coefficients of simple bodies, and the estimate",
         "White, *Fluid Mechanics*, 8th ed., table 7.3, after Hoerner 1965, *Fluid-Dynamic Drag*",
-        "`Drag()` from the silhouettes of each body.",
+        "`Silhouette()` from the silhouettes of each body.",
         _white,
         "The estimate knows how squarely faces meet the flow, not how the flow closes behind: what is long and "
         "rounded has less, and what is long and blunt a little less, than it says.",

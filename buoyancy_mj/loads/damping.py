@@ -1,0 +1,114 @@
+"""`Damping`: how the water slows a body down, as the user chooses it."""
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from buoyancy_mj.errors import ModelError
+
+
+def _check_numbers(options: Any) -> None:
+    """Refuse a field that is not a finite number of at least 0."""
+    for field in dataclasses.fields(options):
+        value = getattr(options, field.name)
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        if not number or not 0.0 <= value < math.inf:
+            raise ModelError(
+                f"damping {field.name} is {value!r}; it must be a finite number of at least 0"
+            )
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Silhouette:
+    """Linear and quadratic damping of a body, estimated once from the silhouettes of its hulls.
+
+    Along each axis of the body the force is 1/2 rho C A |u| u. A is the silhouette of all its hulls.
+    C is `coefficient` times the mean square cosine between the hulls' normals and the axis, weighed
+    by what each face shows. That makes 1.05 for a cube face-on, 0.53 for a sphere and 0.70 for a
+    cylinder across the flow; Hoerner, Fluid-Dynamic Drag (1965), ch. 3, measured 1.05, 0.47 and,
+    with a length of one to five diameters, 0.64 to 0.74 (table 7.3 of White, Fluid Mechanics, 8th ed.).
+
+    Turning about an axis through the centroid of its volume, each strip of the two other silhouettes
+    meets the flow at its own speed (cross-flow principle): the torque is 1/2 rho C int |r|^3 dA |w| w.
+
+    The linear part equals the quadratic one at a low speed, `linear_froude` sqrt(g L), with L the
+    longest side of the body. In the measured coefficients of the BlueROV2 Heavy (von Benzon et al.
+    2022, J. Mar. Sci. Eng. 10(12):1898) the two are equal at 0.10 m/s in surge and 0.17 m/s in
+    heave, with L = 0.46 m a Froude number of 0.05 to 0.08.
+
+    Raises:
+        ModelError: a negative or infinite value.
+    """
+
+    coefficient: float = 1.05
+    """Drag coefficient of a flat face across the flow."""
+    linear_froude: float = 0.05
+    """Froude number at which linear and quadratic damping are equal; 0 for no linear damping."""
+
+    def __post_init__(self) -> None:
+        _check_numbers(self)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Panels:
+    """Pressure drag and skin friction of each wet triangle, in each step: for hulls with a flow along them.
+
+    Faces that lead have the coefficient 2/3 `coefficient`, those that trail 1/3, so that a plate across
+    the flow has all of it, and a smooth hull along the flow little; see `kernels.panels.add_panels`.
+
+    Raises:
+        ModelError: a negative or infinite value, or no viscosity.
+    """
+
+    coefficient: float = 1.05
+    """Drag coefficient of a flat face across the flow."""
+    viscosity: float = 1.19e-6
+    """Kinematic viscosity [m^2/s]: of sea water at 15 degrees Celsius (ITTC 7.5-02-01-03)."""
+
+    def __post_init__(self) -> None:
+        _check_numbers(self)
+        if self.viscosity == 0.0:
+            raise ModelError(
+                "damping viscosity is 0; panels need one, 1.19e-6 for sea water at 15 degrees Celsius"
+            )
+
+
+VISCOUS: Mapping[str, type[Silhouette] | type[Panels] | None] = {
+    "silhouette": Silhouette,
+    "panels": Panels,
+    "none": None,
+}
+"""Kinds of viscous drag by name."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Damping:
+    """What slows a body down in the water: viscous drag, and the waves that it makes.
+
+    `viscous` is an estimate for bodies whose damping the model does not state. A model states it in
+    `<custom>`, as numerics 'linear_damping:BODY' and 'quadratic_damping:BODY': force and torque per
+    velocity and per velocity squared along the body's axes. Six numbers are diagonals, at the centroid
+    of its wet volume; 36 are matrices row by row, at its origin, D v and (D_n |v|) v (Fossen 2021,
+    sec. 6.4).
+
+    The numeric 'radiation_damping:BODY' of three numbers is what the waves that the body makes take from
+    heave, roll and pitch: force and torques per velocity, scaled with its waterplane over its silhouette
+    from above. It is a load of its own.
+
+    Raises:
+        ModelError: a value of another kind.
+    """
+
+    viscous: Silhouette | Panels | None = Silhouette()
+    """How drag is estimated; None for no viscous drag at all, not even what the model states."""
+    radiation: bool = True
+    """Whether bodies lose what the waves that they make take, where the model states it."""
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.viscous, Silhouette | Panels | None):
+            raise ModelError(
+                f"damping viscous is {self.viscous!r}; it must be Silhouette(), Panels() or None"
+            )
+        if not isinstance(self.radiation, bool):
+            raise ModelError(f"damping radiation is {self.radiation!r}; it must be true or false")

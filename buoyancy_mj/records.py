@@ -1,0 +1,93 @@
+"""What classes that hold values share: fields that `help()` shows, and attributes that stay as they were made."""
+
+import ast
+import dataclasses
+import functools
+import inspect
+import sys
+import textwrap
+from pathlib import Path
+from typing import Any, NoReturn
+
+
+def field_docs(cls: type) -> dict[str, str]:
+    """The docstring under each field of a dataclass, by the name of the field, inherited ones first."""
+    docs: dict[str, str] = {}
+    for base in reversed(cls.__mro__):
+        docs |= _docs_of_class(base.__module__, base.__name__)
+    return {field.name: docs[field.name] for field in dataclasses.fields(cls) if field.name in docs}
+
+
+def show_fields(cls: type) -> None:
+    """Add the fields of a dataclass, with their docstrings, to what `help(cls)` shows.
+
+    The source is read when somebody first asks for the docstring, so that imports stay fast.
+    """
+    cls.__doc__ = _FieldsShown(inspect.cleandoc(cls.__doc__ or ""))  # type: ignore[assignment]
+
+
+class ReadOnly:
+    """An object whose public attributes are set once, when it is made.
+
+    A subclass calls `_seal` with a sentence that says what to do instead, at the end of `__init__`.
+
+    Raises:
+        AttributeError: a public attribute is assigned or deleted after that.
+    """
+
+    _instead = ""
+
+    def _seal(self, instead: str) -> None:
+        self._instead = instead
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if self._instead and not name.startswith("_"):
+            self._refuse(name)
+        super().__setattr__(name, value)
+
+    def __delattr__(self, name: str) -> None:
+        if not name.startswith("_"):
+            self._refuse(name)
+        super().__delattr__(name)
+
+    def _refuse(self, name: str) -> NoReturn:
+        raise AttributeError(
+            f"'{name}' of a {type(self).__name__} cannot be changed, since it would change nothing; "
+            f"{self._instead}"
+        )
+
+
+class _FieldsShown:
+    """A class's docstring, made when it is first read."""
+
+    def __init__(self, summary: str) -> None:
+        self._summary = summary
+
+    def __get__(self, _: object, owner: type) -> str:
+        docs = field_docs(owner)
+        lines = []
+        for field in dataclasses.fields(owner):
+            if field.init and not field.name.startswith("_"):
+                text = " ".join(docs.get(field.name, "").split())
+                lines.append(textwrap.indent(f"{field.name}: {text}", "    "))
+        return "\n".join([self._summary, "", "Fields:", *lines])
+
+
+@functools.cache
+def _docs_of_class(module: str, name: str) -> dict[str, str]:
+    """The docstrings under the fields of a class that stands in a module's own file."""
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if file is None or not file.endswith(".py"):
+        return {}
+    for node in ast.parse(Path(file).read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.ClassDef) and node.name == name:
+            return {
+                field.target.id: inspect.cleandoc(doc.value.value)
+                for field, doc in zip(node.body, node.body[1:], strict=False)
+                if isinstance(field, ast.AnnAssign)
+                and isinstance(field.target, ast.Name)
+                and isinstance(doc, ast.Expr)
+                and isinstance(doc.value, ast.Constant)
+                and isinstance(doc.value.value, str)
+            }
+    return {}
