@@ -12,7 +12,8 @@ from typer.testing import CliRunner
 from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog
 
-BOX = """<mujoco><worldbody><body name="box"><geom name="box" type="box" size=".2 .15 .05" mass="4"/></body>
+BOX = """<mujoco><worldbody>
+<body name="box"><geom name="box" type="box" size=".2 .15 .05" mass="4"/></body>
 </worldbody></mujoco>"""
 
 
@@ -229,7 +230,8 @@ def test_bad_input_gets_one_sentence_and_leaves_nothing(run, tmp_path, arguments
     vertices = "-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1"
     faces = "0 2 1 0 3 2 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7"
     (tmp_path / "tub.xml").write_text(
-        f"""<mujoco><asset><mesh name="tub" inertia="shell" vertex="{vertices}" face="{faces}"/></asset>
+        f"""<mujoco><asset>
+        <mesh name="tub" inertia="shell" vertex="{vertices}" face="{faces}"/></asset>
         <worldbody><body><geom name="tub" type="mesh" mesh="tub"/></body></worldbody></mujoco>"""
     )
     (tmp_path / "folder.rrd").mkdir()

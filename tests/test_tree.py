@@ -1,4 +1,4 @@
-"""The tree of moments: its structure, its moments, and that it finds what the plain way finds, in waves too."""
+"""The tree of moments: its structure, its moments, and the plain way's answers, in waves too."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def place(mesh, seed, height):
     return position[None], turn.reshape(1, 9)
 
 
-# structure ------------------------------------------------------------------------------------------
+# structure ----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", MESHES)
@@ -129,7 +129,7 @@ def test_the_moments_are_the_integrals(monkeypatch):
         assert found[30] == pytest.approx(np.linalg.norm(vectors, axis=1).sum(), rel=1e-12)
 
 
-# results --------------------------------------------------------------------------------------------
+# results ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -238,7 +238,7 @@ def test_a_tolerance_that_is_none_is_told(tolerance):
         Exact(tolerance=tolerance)
 
 
-def test_several_hulls_share_one_structure_and_do_not_mix(pair):
+def test_several_hulls_share_one_structure_and_do_not_mix():
     meshes = [MESHES["ball"], shapes.box((0.1, 0.1, 0.1)), MESHES["torus"]]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tree, "FEW", 100)
