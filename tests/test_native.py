@@ -298,7 +298,7 @@ def test_a_pose_that_is_no_number_gives_loads_that_are_none_and_the_engines_own_
     )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     numbers=st.lists(
         st.floats(allow_nan=True, allow_infinity=True, width=64), min_size=14, max_size=14

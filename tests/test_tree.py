@@ -181,7 +181,7 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
     st.sampled_from([1e-2, 2e-3, 5e-4]),
     st.sampled_from(["box", "plate", "rod"]),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_any_tolerance_is_kept(seed, height, tolerance, name):
     mesh = shapes.box(
         {"box": (0.5, 0.4, 0.3), "plate": (0.5, 0.5, 0.01), "rod": (0.8, 0.02, 0.02)}[name]
