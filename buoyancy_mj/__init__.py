@@ -1,4 +1,6 @@
-"""Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, exact on its own meshes."""
+"""Water for MuJoCo: any MJCF vehicle floats, rights itself, rides waves, exact on its own meshes."""
+
+from importlib.metadata import version
 
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.engine.plugin import add_water as add_water
@@ -52,3 +54,5 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+
+__version__ = version("buoyancy_mj")
