@@ -1,6 +1,7 @@
-"""Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, exact on its own meshes."""
+"""Water for MuJoCo: any MJCF vehicle floats, rights itself, rides waves, exact on its own meshes."""
 
 import dataclasses
+from importlib.metadata import version
 
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.engine.plugin import add_water as add_water
@@ -60,6 +61,8 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+
+__version__ = version("buoyancy_mj")
 
 for _value in tuple(globals().values()):
     if isinstance(_value, type) and dataclasses.is_dataclass(_value):

@@ -1,6 +1,6 @@
 """Make the OBJ meshes of the models that ship, from a few named dimensions [m].
 
-Run it from anywhere (`.venv/bin/python scripts/make_models.py`); the meshes it writes are committed.
+Run `.venv/bin/python scripts/make_models.py` from anywhere; commit the meshes that it writes.
 """
 
 from pathlib import Path
@@ -27,7 +27,7 @@ MOTOR_RADIUS, MOTOR_LENGTH, STRUT = 0.020, 0.080, 0.006
 
 
 def hourglass() -> Trimesh:
-    """The hourglass that the reproduction of the source paper measures, z up, its middle at the origin."""
+    """The hourglass that the reproduction of the source paper measures, z up, about its middle."""
     mesh = solids.hourglass()
     return Trimesh(mesh.vertices, mesh.faces, process=False)
 

@@ -2,12 +2,25 @@
 
 import mujoco
 import pytest
+from hypothesis import HealthCheck, settings
+
+# no test depends on how fast the machine is, nor on whether its kernels are compiled already
+settings.register_profile(
+    "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("any machine")
+
+CALLBACKS = {
+    "mjcb_control": (mujoco.get_mjcb_control, mujoco.set_mjcb_control),
+    "mjcb_passive": (mujoco.get_mjcb_passive, mujoco.set_mjcb_passive),
+}
 
 
 @pytest.fixture(autouse=True)
 def no_callback_is_left_behind():
     """Callbacks are global to the process: every test ends without one."""
     yield
-    left = mujoco.get_mjcb_control()
-    mujoco.set_mjcb_control(None)
-    assert left is None
+    left = [name for name, (get, _) in CALLBACKS.items() if get() is not None]
+    for _, put in CALLBACKS.values():
+        put(None)
+    assert not left

@@ -1,4 +1,4 @@
-"""Added mass: Lamb's ellipsoids, Kirchhoff's equations, periods, waves, and stability with much of it."""
+"""Added mass: Lamb's ellipsoids, Kirchhoff's equations, periods, waves, and a steady engine."""
 
 import math
 
@@ -84,7 +84,8 @@ def test_of_an_ellipsoid_the_estimate_is_its_own_wherever_it_sits():
 def test_two_hulls_of_one_body_count_together():
     one = vessels.of_geoms('<geom type="box" size="1 .3 .2" mass="9"/>')
     two = vessels.of_geoms(
-        '<geom type="box" size=".5 .3 .2" pos=".5 0 0" mass="9"/><geom type="box" size=".5 .3 .2" pos="-.5 0 0"/>'
+        '<geom type="box" size=".5 .3 .2" pos=".5 0 0" mass="9"/>'
+        '<geom type="box" size=".5 .3 .2" pos="-.5 0 0"/>'
     )
     assert estimate_added_mass(find_hulls(two), 1000.0) == pytest.approx(
         estimate_added_mass(find_hulls(one), 1000.0), abs=1e-6
@@ -97,8 +98,10 @@ def test_two_hulls_of_one_body_count_together():
 ARM = """<mujoco><custom><numeric name="added_mass:hull" data="{hull}"/>
 <numeric name="added_mass:arm" data="{arm}"/></custom>
 <option timestep="0.005" gravity="0 0 -9.81"/><worldbody><body name="hull" pos="0 0 -3"><freejoint/>
-<geom type="ellipsoid" size=".4 .2 .15" mass="45" pos=".05 0 .02"/><body name="arm" pos=".4 .1 0"><joint axis="0 1 .2"/>
-<geom type="capsule" size=".05" fromto="0 0 0 .5 0 0" mass="3"/></body></body></worldbody></mujoco>"""
+<geom type="ellipsoid" size=".4 .2 .15" mass="45" pos=".05 0 .02"/>
+<body name="arm" pos=".4 .1 0"><joint axis="0 1 .2"/>
+<geom type="capsule" size=".05" fromto="0 0 0 .5 0 0" mass="3"/>
+</body></body></worldbody></mujoco>"""
 
 
 def words(matrix):
@@ -187,7 +190,10 @@ def difference(model, one, other):
 
 
 def kirchhoff(mass, inertia, added, v, w, duration):
-    """Body velocities of a neutral body in still, unbounded, frictionless water (Lamb 1932, art. 124), and its attitude."""
+    """Body velocities and attitude of a neutral body in still, unbounded, frictionless water.
+
+    Lamb 1932, art. 124.
+    """
     whole = added + np.diag([mass] * 3 + list(inertia))
     inverse = np.linalg.inv(whole)
 
@@ -210,7 +216,8 @@ def test_a_neutral_body_moves_by_kirchhoffs_equations_in_any_current(native, cur
     added[0, 4] = added[4, 0] = 1.0
     # a hair off its origin, lest MuJoCo keep its inertia as a diagonal
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="0.002" integrator="RK4"/><worldbody><body name="b" pos="0 0 -9"><freejoint/>
+        f"""<mujoco><option timestep="0.002" integrator="RK4"/>
+        <worldbody><body name="b" pos="0 0 -9"><freejoint/>
         <inertial pos="0 0 1e-5" mass="45" diaginertia="{words(inertia)}"/>
         <geom type="ellipsoid" size=".4 .2 {a}" pos="0 0 1e-5"/></body></worldbody></mujoco>"""
     )
@@ -234,8 +241,10 @@ def test_a_sphere_bobs_slower_by_what_is_wet_of_it():
     # 2 pi sqrt((m + s A) / C33), half of it wet: R 0.15, C33 = rho g pi R^2
     mass, added = 1000 * 2 / 3 * math.pi * 0.15**3, 3.0
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="0.002"/><custom><numeric name="added_mass:b" data="3 3 3 0 0 0"/></custom>
-        <worldbody><body name="b"><freejoint/><geom type="sphere" size=".15" mass="{mass}"/></body></worldbody></mujoco>"""
+        f"""<mujoco><option timestep="0.002"/>
+        <custom><numeric name="added_mass:b" data="3 3 3 0 0 0"/></custom>
+        <worldbody><body name="b"><freejoint/><geom type="sphere" size=".15" mass="{mass}"/></body>
+        </worldbody></mujoco>"""
     )
     expected = 2 * math.pi * math.sqrt((mass + 0.5 * added) / (1000 * 9.81 * math.pi * 0.15**2))
     for integrator in ("mjINT_EULER", "mjINT_IMPLICITFAST", "mjINT_IMPLICIT", "mjINT_RK4"):
@@ -253,7 +262,7 @@ def test_a_sphere_bobs_slower_by_what_is_wet_of_it():
 
 
 def test_the_bluerov2_heavy_rolls_and_pitches_with_its_periods():
-    # P18: von Benzon et al. 2022: roll 3.672 s and pitch 3.311 s with the added moments 0.189 and 0.135
+    # P18: von Benzon et al. 2022: roll 3.672 s and pitch 3.311 s with added moments 0.189 and 0.135
     a = (0.0134 / (4 / 3 * math.pi)) ** (1 / 3)
     model = mujoco.MjModel.from_xml_string(
         f"""<mujoco><option timestep="0.005" integrator="RK4"/><custom>
@@ -275,7 +284,8 @@ def test_the_bluerov2_heavy_rolls_and_pitches_with_its_periods():
         x = np.array(angles)
         k = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
         when = np.array(times)[k] - 0.005 * x[k] / (x[k + 1] - x[k])
-        # free to sway, it turns about a point between G and B: the moment about the centre of buoyancy differs by m z^2
+        # free to sway, it turns about a point between G and B: the moment about the centre of
+        # buoyancy differs by m z^2
         assert np.diff(when).mean() == pytest.approx(published, rel=1e-2)
         assert 2 * math.pi * math.sqrt(moment / (13.4 * 9.81 * 0.01)) == pytest.approx(
             published, rel=1e-3
@@ -283,14 +293,16 @@ def test_the_bluerov2_heavy_rolls_and_pitches_with_its_periods():
 
 
 def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
-    # with Froude-Krylov (rho V) and added mass (Ca rho V) the water's acceleration is the sphere's: Kelvin
+    # with Froude-Krylov (rho V) and added mass (Ca rho V) the water's acceleration is the sphere's:
+    # Kelvin
     radius = 0.05
     mass = 1000 * 4 / 3 * math.pi * radius**3
     # of small amplitude, since it drifts by its square (Stokes)
     wave = RegularWave(0.002, wavelength=6.0)
     k, omega = 2 * math.pi / 6.0, float(wave.rows[0, 3])
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="0.01" integrator="RK4"/><worldbody><body name="b" pos="0 0 -1"><freejoint/>
+        f"""<mujoco><option timestep="0.01" integrator="RK4"/>
+        <worldbody><body name="b" pos="0 0 -1"><freejoint/>
         <geom type="sphere" size="{radius}" mass="{mass}"/></body></worldbody></mujoco>"""
     )
     data = mujoco.MjData(model)
@@ -334,10 +346,13 @@ def test_acceleration_is_the_rate_of_the_velocity():
 def test_twenty_times_its_mass_comes_to_rest_on_the_bottom(integrator, solver):
     model = mujoco.MjModel.from_xml_string(
         f"""<mujoco><option timestep="0.01" integrator="{integrator}" solver="{solver}"/><custom>
-        <numeric name="added_mass:hull" data="900 900 900 30 30 30"/><numeric name="added_mass:arm" data="60 60 60 1 1 1"/>
-        </custom><worldbody><geom type="plane" size="9 9 .1" pos="0 0 -1"/><body name="hull" pos="0 0 -.5"><freejoint/>
-        <geom type="box" size=".2 .2 .1" mass="45"/><body name="arm" pos=".2 0 0"><joint axis="0 1 0" damping="1"/>
-        <geom type="capsule" size=".05" fromto="0 0 0 .3 0 0" mass="6"/></body></body></worldbody></mujoco>"""
+        <numeric name="added_mass:hull" data="900 900 900 30 30 30"/>
+        <numeric name="added_mass:arm" data="60 60 60 1 1 1"/>
+        </custom><worldbody><geom type="plane" size="9 9 .1" pos="0 0 -1"/>
+        <body name="hull" pos="0 0 -.5"><freejoint/><geom type="box" size=".2 .2 .1" mass="45"/>
+        <body name="arm" pos=".2 0 0"><joint axis="0 1 0" damping="1"/>
+        <geom type="capsule" size=".05" fromto="0 0 0 .3 0 0" mass="6"/>
+        </body></body></worldbody></mujoco>"""
     )
     data = mujoco.MjData(model)
     with Buoyancy(model).installed():
@@ -408,7 +423,8 @@ def test_above_the_water_nothing_is_added():
         ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
         (
             {"boat": DIAGONAL},
-            "added mass is stated for body 'boat', which has no hull of its own; possible: arm, hull",
+            "added mass is stated for body 'boat', which has no hull of its own; "
+            "possible: arm, hull",
         ),
         (
             {"hull": [1, 2, 3]},
@@ -443,7 +459,8 @@ def test_a_body_whose_inertia_is_kept_as_a_diagonal_takes_what_fits():
     assert (model.M_rownnz == 1).all()
     with pytest.raises(
         ModelError,
-        match=r"MuJoCo keeps the inertia of body 'hull' as a diagonal, .* move one of them by a hair",
+        match=r"MuJoCo keeps the inertia of body 'hull' as a diagonal, "
+        r".* move one of them by a hair",
     ):
         Buoyancy(model, added_mass={"hull": DIAGONAL})
     assert (

@@ -40,7 +40,7 @@ def put(spec, result):
 
 
 @given(st.floats(0.16, 0.5), st.floats(-0.05, 0.05), st.floats(-0.02, 0.02))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=20)
 def test_the_ballasted_model_floats_at_the_wanted_draft_heel_and_trim(draft, heel, trim):
     spec = raft()
     try:

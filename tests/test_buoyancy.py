@@ -22,7 +22,8 @@ BOX = """
 <mujoco>
   <option timestep="0.002" integrator="{integrator}" gravity="{gravity}"><flag {flag}/></option>
   <worldbody>
-    <body name="box" pos="0 0 {z}"><freejoint/><geom name="box" type="box" size=".2 .15 .1" mass="6"/></body>
+    <body name="box" pos="0 0 {z}"><freejoint/>
+      <geom name="box" type="box" size=".2 .15 .1" mass="6"/></body>
   </worldbody>
   <actuator/>
 </mujoco>
@@ -53,7 +54,7 @@ def after(count, integrator="RK4", push=None, **kwargs):
     return np.r_[data.qpos, data.qvel]
 
 
-# loads ----------------------------------------------------------------------------------------------
+# loads --------------------------------------------------------------------------------------------
 
 
 def test_the_force_is_rho_g_v_at_the_centroid_of_what_is_wet():
@@ -88,7 +89,8 @@ def test_an_applied_force_and_torque_do_what_the_loads_say():
 def test_hulls_add_up_to_bodies_and_bodies_to_the_total():
     model = mujoco.MjModel.from_xml_string(
         """<mujoco><worldbody><body name="raft"><freejoint/>
-        <geom type="box" size=".5 .1 .1" pos="0 .3 0"/><geom type="box" size=".5 .1 .1" pos="0 -.3 .05"/>
+        <geom type="box" size=".5 .1 .1" pos="0 .3 0"/>
+        <geom type="box" size=".5 .1 .1" pos="0 -.3 .05"/>
         <body name="flap" pos=".7 0 0"><joint axis="0 1 0"/><geom type="sphere" size=".1"/></body>
         </body></worldbody></mujoco>"""
     )
@@ -158,7 +160,7 @@ def test_without_gravity_there_is_no_buoyancy(flag):
     )
 
 
-# models where it could not work ---------------------------------------------------------------------
+# models where it could not work -------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("gravity", ["0 0 9.81", "0 -9.81 0", "0.1 0 -9.81"])
@@ -214,7 +216,7 @@ def test_threads_that_share_one_buoyancy_do_not_disturb_each_other():
     assert np.array_equal(*ends)
 
 
-# integrators ----------------------------------------------------------------------------------------
+# integrators --------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
@@ -266,7 +268,7 @@ def test_between_mj_step1_and_mj_step2_it_acts_as_the_callback_does():
     assert np.array_equal(data.qpos, again.qpos)
 
 
-# other people's forces ------------------------------------------------------------------------------
+# other people's forces ----------------------------------------------------------------------------
 
 
 PUSH = np.array([3.0, -2.0, 25.0, 0.3, 0.2, -0.1])
@@ -344,7 +346,8 @@ def test_a_call_twice_in_one_pass_acts_once():
 
 def test_finite_differences_of_the_transition_see_the_water_once():
     model = mujoco.MjModel.from_xml_string(
-        """<mujoco><option timestep="0.002" integrator="Euler"/><worldbody><body><joint name="z" type="slide" axis="0 0 1"/>
+        """<mujoco><option timestep="0.002" integrator="Euler"/>
+        <worldbody><body><joint name="z" type="slide" axis="0 0 1"/>
         <geom type="box" size=".2 .15 .1" mass="12"/></body></worldbody>
         <actuator><motor joint="z" gear="1"/></actuator></mujoco>"""
     )
@@ -358,7 +361,7 @@ def test_finite_differences_of_the_transition_see_the_water_once():
     assert b[1, 0] == pytest.approx(0.002 / 12.0, rel=1e-4)
 
 
-# states ---------------------------------------------------------------------------------------------
+# states -------------------------------------------------------------------------------------------
 
 
 def test_a_saved_state_carries_no_water():
@@ -415,7 +418,7 @@ def test_one_buoyancy_serves_several_data():
         assert np.array_equal(data.qpos, end)
 
 
-# callbacks ------------------------------------------------------------------------------------------
+# callbacks ----------------------------------------------------------------------------------------
 
 
 def test_two_models_live_in_one_process():
@@ -442,7 +445,7 @@ def test_the_callback_that_was_there_still_runs_and_comes_back():
     model, data = box(z=-1.0)
     seen = []
 
-    def theirs(model, data):
+    def theirs(_model, data):
         seen.append(data.time)
 
     mujoco.set_mjcb_control(theirs)
@@ -500,7 +503,7 @@ def test_it_is_itself_a_control_callback():
 def test_an_error_of_another_callback_reaches_the_user():
     model, data = box()
 
-    def broken(model, data):
+    def broken(_model, _data):
         raise ValueError("theirs")
 
     mujoco.set_mjcb_control(broken)
@@ -512,7 +515,7 @@ def test_an_error_of_another_callback_reaches_the_user():
         mujoco.set_mjcb_control(None)
 
 
-# articulated vehicles -------------------------------------------------------------------------------
+# articulated vehicles -----------------------------------------------------------------------------
 
 
 ARM = """
@@ -546,7 +549,8 @@ def test_a_light_link_floats_up_and_a_heavy_one_hangs(mass, up):
 
 
 def test_a_geom_on_a_body_without_a_joint_floats_its_parent():
-    text = """<mujoco><worldbody><body name="a" pos="0 0 -1"><freejoint/><inertial pos="0 0 0" mass="5" diaginertia="1 1 1"/>
+    text = """<mujoco><worldbody><body name="a" pos="0 0 -1"><freejoint/>
+    <inertial pos="0 0 0" mass="5" diaginertia="1 1 1"/>
     {}</body></worldbody></mujoco>"""
     direct, welded = (
         mujoco.MjModel.from_xml_string(text.format(part))

@@ -1,3 +1,4 @@
+import importlib.metadata
 import json
 import os
 import re
@@ -7,12 +8,15 @@ import sys
 import time
 
 import pytest
+import typer
 from typer.testing import CliRunner
 
+import buoyancy_mj
 from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog
 
-BOX = """<mujoco><worldbody><body name="box"><geom name="box" type="box" size=".2 .15 .05" mass="4"/></body>
+BOX = """<mujoco><worldbody>
+<body name="box"><geom name="box" type="box" size=".2 .15 .05" mass="4"/></body>
 </worldbody></mujoco>"""
 
 
@@ -229,7 +233,8 @@ def test_bad_input_gets_one_sentence_and_leaves_nothing(run, tmp_path, arguments
     vertices = "-1 -1 -1  1 -1 -1  1 1 -1  -1 1 -1  -1 -1 1  1 -1 1  1 1 1  -1 1 1"
     faces = "0 2 1 0 3 2 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7"
     (tmp_path / "tub.xml").write_text(
-        f"""<mujoco><asset><mesh name="tub" inertia="shell" vertex="{vertices}" face="{faces}"/></asset>
+        f"""<mujoco><asset>
+        <mesh name="tub" inertia="shell" vertex="{vertices}" face="{faces}"/></asset>
         <worldbody><body><geom name="tub" type="mesh" mesh="tub"/></body></worldbody></mujoco>"""
     )
     (tmp_path / "folder.rrd").mkdir()
@@ -315,5 +320,29 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
 
 def test_help_names_every_command(run):
     output = run("--help").stdout
-    for name in ("run", "list", "view"):
-        assert name in output
+    commands = typer.main.get_command(app).commands
+    assert commands
+    for name in commands:
+        assert re.search(rf"^  {name}  ", output, re.MULTILINE), name
+
+
+def test_version_is_that_of_the_installed_package(run):
+    assert buoyancy_mj.__version__ == importlib.metadata.version("buoyancy_mj")
+    result = run("--version")
+    assert result.exit_code == 0
+    assert result.stdout == f"buoyancy-mj {buoyancy_mj.__version__}\n"
+
+
+def completion(instruction, **environment):
+    environment["_BUOYANCY_MJ_COMPLETE"] = instruction
+    return CliRunner().invoke(app, prog_name="buoyancy-mj", env=environment).stdout
+
+
+def test_a_shell_completes_commands():
+    words = completion("complete_bash", COMP_WORDS="buoyancy-mj ins", COMP_CWORD="1")
+    assert words.split() == ["inspect"]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_completion_is_installed_by_a_script(shell):
+    assert f"_BUOYANCY_MJ_COMPLETE=complete_{shell}" in completion(f"source_{shell}")

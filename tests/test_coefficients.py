@@ -67,7 +67,8 @@ def test_capytaines_hemisphere_has_hulmes_coefficients(hemisphere):
 def test_a_model_takes_them_where_it_states_none_itself(hemisphere):
     found = read_coefficients(hemisphere, 4.4, submerged=0.5)
     spec = mujoco.MjSpec.from_string(
-        '<mujoco><worldbody><body name="ball"><freejoint/><geom type="sphere" size="5" mass="261800" pos="0 0 1e-3"/></body>'
+        '<mujoco><worldbody><body name="ball"><freejoint/>'
+        '<geom type="sphere" size="5" mass="261800" pos="0 0 1e-3"/></body>'
         "</worldbody></mujoco>"
     )
     state_coefficients(spec, found)
@@ -85,7 +86,8 @@ def test_a_model_takes_them_where_it_states_none_itself(hemisphere):
 
 def test_a_scene_names_a_dataset(hemisphere, tmp_path):
     (tmp_path / "ball.xml").write_text(
-        '<mujoco><worldbody><body name="float"><geom type="sphere" size="5" mass="261800" pos="0 0 1e-3"/></body>'
+        '<mujoco><worldbody><body name="float">'
+        '<geom type="sphere" size="5" mass="261800" pos="0 0 1e-3"/></body>'
         "</worldbody></mujoco>"
     )
     (tmp_path / "ball.nc").write_bytes(hemisphere.read_bytes())

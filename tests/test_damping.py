@@ -1,4 +1,4 @@
-"""Stated matrices, waves made, and drag by panels: closed forms, limits, and that no step turns a motion round."""
+"""Stated matrices, radiated waves and drag by panels: closed forms, limits, stable steps."""
 
 import math
 
@@ -38,8 +38,10 @@ def of(custom, geom='<geom type="box" size=".3 .2 .1" mass="24"/>', pos="0 0 -2"
         for name, data in custom.items()
     )
     return mujoco.MjModel.from_xml_string(
-        f'<mujoco><option timestep="0.001" {option}/><custom>{text}</custom><worldbody><body name="b" pos="{pos}">'
-        f'<freejoint/><inertial pos=".02 -.01 -.03" mass="24" diaginertia=".5 .8 1.1"/>{geom}</body></worldbody></mujoco>'
+        f'<mujoco><option timestep="0.001" {option}/><custom>{text}</custom>'
+        f'<worldbody><body name="b" pos="{pos}"><freejoint/>'
+        f'<inertial pos=".02 -.01 -.03" mass="24" diaginertia=".5 .8 1.1"/>{geom}'
+        "</body></worldbody></mujoco>"
     )
 
 
@@ -152,7 +154,8 @@ def test_radiation_takes_from_heave_roll_and_pitch_at_the_surface_alone():
 
 
 def test_the_decay_of_heave_is_that_of_its_radiation():
-    # (m + A) z'' + b z' + rho g S z = 0: ratio of a crest to the next exp(-pi b / (m_all w)) per half period
+    # (m + A) z'' + b z' + rho g S z = 0: ratio of a crest to the next exp(-pi b / (m_all w)) per
+    # half period
     model = of(
         {"radiation_damping": [60.0, 0.0, 0.0], "added_mass": [0, 0, 36.0, 0, 0, 0]}, pos="0 0 0.01"
     )

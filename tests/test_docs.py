@@ -35,7 +35,8 @@ def test_the_lines_of_python_run(code, told, capsys):
 def test_the_extension_in_the_readme_is_one():
     (extension,) = re.findall(r"    <extension>.*?</extension>", README, re.DOTALL)
     model = mujoco.MjModel.from_xml_string(
-        f"<mujoco>{extension}<worldbody><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>"
+        f"<mujoco>{extension}<worldbody><body><freejoint/><geom size='.1'/></body></worldbody>"
+        "</mujoco>"
     )
     water = water_in(model).water
     assert (water.density, len(water.waves), water.current) == (1025.0, 2, (0.2, 0.0, 0.0))

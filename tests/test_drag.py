@@ -51,7 +51,7 @@ def test_a_hidden_part_adds_nothing_to_the_silhouette():
 
 
 def test_turning_a_plate_meets_the_flow_at_each_strips_own_speed():
-    # 1/2 rho C int |x|^3 dA over a plate 2 a long and 2 b wide: 1/2 rho C b a^4, from its flat sides
+    # 1/2 rho C int |x|^3 dA over a plate 2 a long and 2 b wide: 1/2 rho C b a^4, on its flat sides
     a, b = 0.5, 0.2
     about_y = damping(f'<geom type="box" size="{a} {b} .001"/>').quadratic[0, 4]
     assert about_y == pytest.approx(0.5 * 1000.0 * 1.05 * b * a**4, rel=0.02)
@@ -100,7 +100,8 @@ def test_drag_scales_with_what_is_wet_and_acts_at_its_centroid():
 
 def test_a_body_at_rest_in_a_current_is_pushed_along():
     model = mujoco.MjModel.from_xml_string(
-        '<mujoco><worldbody><body pos="0 0 -2"><freejoint/><geom size=".1" mass="4"/></body></worldbody></mujoco>'
+        '<mujoco><worldbody><body pos="0 0 -2"><freejoint/><geom size=".1" mass="4"/></body>'
+        "</worldbody></mujoco>"
     )
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
@@ -128,7 +129,8 @@ ROV = """<mujoco><option timestep="0.01" gravity="0 0 -9.81"/><custom>
 <numeric name="added_mass:rov" data="6.36 7.12 18.68 0.189 0.135 0.222"/>
 <numeric name="linear_damping:rov" data="13.7 0 33 0 0.8 0"/>
 <numeric name="quadratic_damping:rov" data="141 217 190 1.19 0.47 1.5"/></custom>
-<worldbody><body name="rov" pos="0 0 -9"><freejoint/><inertial pos="0 0 -.01" mass="13.5" diaginertia="0.26 0.23 0.37"/>
+<worldbody><body name="rov" pos="0 0 -9"><freejoint/>
+<inertial pos="0 0 -.01" mass="13.5" diaginertia="0.26 0.23 0.37"/>
 <geom type="ellipsoid" size="{} {} {}"/></body></worldbody></mujoco>"""
 
 
@@ -140,8 +142,8 @@ def rov():
 
 @pytest.mark.parametrize(
     ("density", "push", "axis", "speed"),
-    # P18: von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898: sinks with 0.981 N in fresh water, rises with 2.305 N in
-    # sea water; surge with 10, 40, 100 N
+    # P18: von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898: sinks with 0.981 N in fresh water,
+    # rises with 2.305 N in sea water; surge with 10, 40, 100 N
     [
         (1000, 0, 2, -0.0259),
         (1025, 0, 2, 0.0534),

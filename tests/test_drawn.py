@@ -32,7 +32,8 @@ def test_what_the_viewer_shows_is_drawn_and_nothing_else():
 
 
 def test_a_model_of_hidden_geoms_is_drawn_all_the_same():
-    text = '<mujoco><worldbody><body><freejoint/><geom name="only" size=".1" group="3"/></body></worldbody></mujoco>'
+    text = """<mujoco><worldbody><body><freejoint/>
+    <geom name="only" size=".1" group="3"/></body></worldbody></mujoco>"""
     assert set(drawn(text)[1]) == {"only"}
 
 

@@ -24,7 +24,8 @@ G = 9.81
 
 def model_of(geom, integrator="RK4", timestep=0.002, extra=""):
     return mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="{timestep}" integrator="{integrator}"><flag energy="enable"/></option>
+        f"""<mujoco>
+        <option timestep="{timestep}" integrator="{integrator}"><flag energy="enable"/></option>
         <worldbody><body name="b"><freejoint/>{geom}{extra}</body></worldbody></mujoco>"""
     )
 
@@ -51,7 +52,7 @@ def measured_period(values, timestep):
     return np.diff(times).mean()
 
 
-# periods --------------------------------------------------------------------------------------------
+# periods ------------------------------------------------------------------------------------------
 
 
 def test_a_box_heaves_with_its_wall_sided_period():
@@ -72,7 +73,7 @@ def test_a_box_rolls_with_its_small_angle_period():
 
 @pytest.mark.parametrize("drop", [0.05, 0.2, 0.35])
 def test_a_sphere_bobs_with_its_exact_nonlinear_period(drop):
-    # potential of weight and cap volume, V = pi h^2 (3 R - h) / 3, integrated between the turning points
+    # potential of weight and cap volume, V = pi h^2 (3 R - h) / 3, between the turning points
     radius, mass = 0.4, 0.5 * 1000.0 * 4.0 / 3.0 * np.pi * 0.4**3
 
     def potential(z):
@@ -110,7 +111,7 @@ def test_a_neutral_body_under_water_swings_as_a_pendulum(angle, factor):
     )
 
 
-# energy ---------------------------------------------------------------------------------------------
+# energy -------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -155,7 +156,7 @@ def _rest_energy(model, height):
     return model.body_mass[1] * G * height + 1000.0 * G * lifted
 
 
-# rest -----------------------------------------------------------------------------------------------
+# rest ---------------------------------------------------------------------------------------------
 
 
 def test_a_box_settles_at_the_draft_of_its_mass():
@@ -250,7 +251,7 @@ def test_the_cuboid_of_openfoam_tips_over():
     assert abs(upright[-1]) < 0.1
 
 
-# drag -----------------------------------------------------------------------------------------------
+# drag ---------------------------------------------------------------------------------------------
 
 
 def test_drag_is_relative_to_the_current():
@@ -313,7 +314,8 @@ def test_in_a_long_sea_the_auv_rides_the_surface():
     late = np.array(
         [(frame.centre_of_mass[2], frame.elevation) for frame in frames if frame.time > 5.0]
     )
-    # waves of 19 m carry a hull of half a metre; what is shorter and its own heave are a little more
+    # waves of 19 m carry a hull of half a metre; what is shorter, and its own heave, is a little
+    # more
     assert np.corrcoef(late.T)[0, 1] > 0.95
     assert np.std(late[:, 0]) == pytest.approx(np.std(late[:, 1]), rel=0.05)
 

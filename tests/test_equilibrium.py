@@ -126,7 +126,7 @@ def test_an_hourglass_that_weighs_half_hangs_by_its_neck():
 
 
 @given(st.integers(0, 10**6), st.floats(0.05, 0.95))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 def test_at_rest_forces_vanish_and_every_small_tilt_comes_back(seed, ratio):
     rng = np.random.default_rng(seed)
     mesh = vessels.dented(seed)

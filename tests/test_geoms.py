@@ -20,9 +20,11 @@ VEHICLE = """
     <body name="hull">
       <freejoint/>
       <geom name="hull_collision" type="capsule" size=".1 .3" group="3"/>
-      <geom name="hull_visual" type="box" size=".1 .1 .4" contype="0" conaffinity="0" mass="0" group="2"/>
+      <geom name="hull_visual" type="box" size=".1 .1 .4" contype="0" conaffinity="0" mass="0"
+        group="2"/>
       <body name="mast" pos="0 0 .6">
-        <geom name="mast_visual" type="cylinder" size=".02 .2" contype="0" conaffinity="0" mass=".1"/>
+        <geom name="mast_visual" type="cylinder" size=".02 .2" contype="0" conaffinity="0"
+          mass=".1"/>
       </body>
       <body name="arm" pos="0 .3 0">
         <joint name="arm" axis="1 0 0"/>
@@ -138,9 +140,10 @@ def test_the_union_is_by_inclusion_and_exclusion(x, turn):
 
 
 def test_a_ball_in_a_box_that_pokes_out_counts_by_its_cap():
-    # a polyhedral ball of the true volume: the cap of height 0.05 is off by its own coarseness alone
+    # a polyhedral ball of the true volume: the cap of height 0.05 is off by its coarseness alone
     model = mujoco.MjModel.from_xml_string("""<mujoco><worldbody><body><freejoint/>
-      <geom type="box" size=".3 .3 .1"/><geom type="sphere" size=".1" pos="0 0 .05"/></body></worldbody></mujoco>""")
+      <geom type="box" size=".3 .3 .1"/><geom type="sphere" size=".1" pos="0 0 .05"/>
+      </body></worldbody></mujoco>""")
     (hull,) = find_hulls(model)
     cap = np.pi * 0.05**2 * (3 * 0.1 - 0.05) / 3
     assert hull.mesh.volume == pytest.approx(0.072 + cap, rel=2e-5)
@@ -230,7 +233,8 @@ def mesh_model(vertices, faces):
     index = " ".join(str(int(i)) for i in np.ravel(faces))
     return mujoco.MjModel.from_xml_string(
         f"""<mujoco><asset><mesh name="tub" vertex="{text}" face="{index}" inertia="shell"/></asset>
-        <worldbody><body name="boat"><freejoint/><geom name="tub" type="mesh" mesh="tub"/></body></worldbody></mujoco>"""
+        <worldbody><body name="boat"><freejoint/><geom name="tub" type="mesh" mesh="tub"/></body>
+        </worldbody></mujoco>"""
     )
 
 

@@ -97,7 +97,7 @@ def test_the_wigley_hull_has_its_closed_forms():
 
 
 @given(st.integers(0, 10**6), st.floats(0.1, 0.9))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_turned_over_a_body_keeps_the_product_of_volume_and_metacentric_height(seed, ratio):
     # P7: a homogeneous body of relative density c, and turned over at 1 - c
     mesh = vessels.dented(seed)
@@ -372,7 +372,7 @@ def test_flooded_parts_count_in_part():
 
 
 @given(st.floats(-100, 100), st.floats(-100, 100), st.floats(-3.1, 3.1), st.floats(-50, 50))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_nothing_changes_where_the_vessel_stands_or_which_way_it_heads(x, y, yaw, level):
     model = vessels.of_mesh(vessels.dented(3), 400.0, (0.1, 0.05, -0.1))
     attitude = Rotation.from_euler("ZYX", [0.0, 0.2, -0.4])

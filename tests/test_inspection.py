@@ -381,7 +381,7 @@ def test_a_refused_hull_is_an_error_status(raft, tmp_path):
     assert raft("inspect", "--hull", "convex").exit_code == 0
 
 
-def test_ballast_writes_a_vehicle_that_hovers(raft, tmp_path):
+def test_ballast_writes_a_vehicle_that_hovers(raft):
     result = raft("ballast", "--reserve", "0", "--out", "heavy/raft.xml")
     assert result.exit_code == 1
     assert "these places cannot level it" in result.stderr

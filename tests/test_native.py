@@ -1,4 +1,4 @@
-"""Compiled water: the same as the Python one, beside others, in threads, and on whatever numbers it is given."""
+"""Compiled water: the same as Python's, beside others, in threads, whatever numbers it gets."""
 
 import ctypes
 import threading
@@ -28,11 +28,13 @@ RAFT = """
       <geom type="box" size=".5 .1 .1" pos="0 .3 0" mass="9"/>
       <geom type="capsule" size=".1 .4" pos="0 -.3 0" euler="0 90 0" mass="9"/>
       <body name="mast" pos="0 0 .2"><geom type="cylinder" size=".03 .3" mass="1"/></body>
-      <body name="arm" pos=".5 0 0"><joint axis="0 1 0"/><geom type="ellipsoid" size=".1 .2 .05" mass="2"/>
+      <body name="arm" pos=".5 0 0"><joint axis="0 1 0"/>
+        <geom type="ellipsoid" size=".1 .2 .05" mass="2"/>
         <body name="hand" pos=".3 0 0"><joint type="ball"/><geom size=".1" mass="3"/></body>
       </body>
     </body>
-    <body name="buoy" pos="2 0 0"><joint type="slide" axis="0 0 1"/><geom size=".2" mass="10"/></body>
+    <body name="buoy" pos="2 0 0">
+      <joint type="slide" axis="0 0 1"/><geom size=".2" mass="10"/></body>
   </worldbody>
 </mujoco>
 """
@@ -60,7 +62,7 @@ def after(count, compiled, integrator="implicitfast", push=None, **options):
     return state(data)
 
 
-# the same as in Python ------------------------------------------------------------------------------
+# the same as in Python ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
@@ -76,7 +78,7 @@ def test_other_methods_act_the_same(method):
 
 
 def test_forces_of_the_user_are_neither_lost_nor_doubled():
-    def push(data, step):
+    def push(data, _step):
         data.xfrc_applied[1] = [5.0, 3.0, 10.0, 1.0, 0.5, 0.2]
         data.xfrc_applied[3] += [0.0, 0.0, 0.01, 0.0, 0.0, 0.0]
 
@@ -100,8 +102,8 @@ def test_a_wrench_becomes_the_generalized_force_that_the_engine_makes_of_it():
     ours, theirs = np.zeros((2, model.nv))
     bodies = np.arange(model.nbody)
     wrenches.project(
-        wrench, bodies, data.xipos, data.subtree_com, model.body_rootid, model.body_parentid, model.body_dofnum,
-        model.body_dofadr, model.dof_parentid, data.cdof, ours,
+        wrench, bodies, data.xipos, data.subtree_com, model.body_rootid, model.body_parentid,
+        model.body_dofnum, model.body_dofadr, model.dof_parentid, data.cdof, ours,
     )  # fmt: skip
     for body in bodies:
         mujoco.mj_applyFT(
@@ -110,7 +112,7 @@ def test_a_wrench_becomes_the_generalized_force_that_the_engine_makes_of_it():
     assert ours == pytest.approx(theirs, rel=1e-12, abs=1e-12)
 
 
-# loads after a step ---------------------------------------------------------------------------------
+# loads after a step -------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("compiled", [True, False])
@@ -149,7 +151,7 @@ def test_loads_of_data_that_nothing_acted_on_are_refused():
         buoyancy.loads(mujoco.MjData(model))
 
 
-# beside others --------------------------------------------------------------------------------------
+# beside others ------------------------------------------------------------------------------------
 
 
 def test_several_waters_act_each_on_its_own_model():
@@ -198,7 +200,7 @@ def test_a_callback_in_c_still_runs_first_and_comes_back():
 def test_beside_a_callback_in_python_it_acts_in_python():
     model, data = raft()
     seen = []
-    mujoco.set_mjcb_passive(lambda m, d: seen.append(d))
+    mujoco.set_mjcb_passive(lambda _model, data: seen.append(data))
     try:
         buoyancy = Buoyancy(model)
         with pytest.raises(  # noqa: SIM117
@@ -222,7 +224,7 @@ def test_inverse_dynamics_sees_the_water():
     assert data.qfrc_inverse == pytest.approx(0.0, abs=1e-8)
 
 
-# copies and threads ---------------------------------------------------------------------------------
+# copies and threads -------------------------------------------------------------------------------
 
 
 def test_a_batch_of_copies_moves_as_single_simulations_at_any_number_of_threads():
@@ -250,7 +252,8 @@ def test_without_being_asked_it_leaves_copies_alone():
         many = batch.Batch(model, 1)
         many.step()
         assert many.bind("qfrc_passive")[0] == pytest.approx(0.0)
-    with pytest.raises(EngineError, match="copies of a model are known to compiled code alone"):  # noqa: SIM117
+    message = "copies of a model are known to compiled code alone"
+    with pytest.raises(EngineError, match=message):  # noqa: SIM117
         with Buoyancy(model).installed(native=False, copies=True):
             pass
 
@@ -279,7 +282,7 @@ def test_more_threads_than_there_is_room_for_take_turns(monkeypatch):
     test_threads_step_side_by_side()
 
 
-# whatever numbers -----------------------------------------------------------------------------------
+# whatever numbers ---------------------------------------------------------------------------------
 
 
 def test_a_pose_that_is_no_number_gives_loads_that_are_none_and_the_engines_own_warning():
@@ -295,7 +298,7 @@ def test_a_pose_that_is_no_number_gives_loads_that_are_none_and_the_engines_own_
     )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     numbers=st.lists(
         st.floats(allow_nan=True, allow_infinity=True, width=64), min_size=14, max_size=14
@@ -364,7 +367,7 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
     assert np.array_equal(end(True), end(False))
 
 
-# the engine's inside --------------------------------------------------------------------------------
+# the engine's inside ------------------------------------------------------------------------------
 
 
 def test_the_engine_keeps_its_numbers_where_they_are_looked_for():

@@ -1,4 +1,4 @@
-"""The water as an engine plugin: in models, files, copies, batches and rollouts, and its life from making to freeing."""
+"""The water as an engine plugin: its settings, files, copies, batches, rollouts and its life."""
 
 import copy
 import dataclasses
@@ -60,9 +60,11 @@ def mjcf(instances, one="", two="", lid="", option=""):
     return f"""<mujoco><option timestep="0.004">{option}</option>
     <extension><plugin plugin="{PLUGIN}">{instances}</plugin></extension>
     <worldbody>
-      <body name="one"><freejoint/><geom name="hull" type="box" size=".3 .2 .1" mass="12"/>{one}</body>
+      <body name="one"><freejoint/>
+        <geom name="hull" type="box" size=".3 .2 .1" mass="12"/>{one}</body>
       <body name="two" pos="0 3 0"><freejoint/><geom size=".2" mass="10"/>{two}
-        <body name="lid" pos="0 0 .3"><geom type="box" size=".1 .1 .02" mass=".1"/>{lid}</body></body>
+        <body name="lid" pos="0 0 .3"><geom type="box" size=".1 .1 .02" mass=".1"/>{lid}</body>
+      </body>
     </worldbody></mujoco>"""
 
 
@@ -96,7 +98,7 @@ def names(model):
     return [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_PLUGIN, i) for i in range(model.nplugin)]
 
 
-# what it does ---------------------------------------------------------------------------------------
+# what it does -------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicitfast"])
@@ -166,7 +168,7 @@ def test_the_water_of_an_unknown_instance_is_told():
         water_in(mujoco.MjModel.from_xml_string(PLAIN))
 
 
-# its configuration ----------------------------------------------------------------------------------
+# its configuration --------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -286,7 +288,8 @@ def test_waves_and_methods_that_a_model_cannot_hold_are_refused():
 
     with pytest.raises(
         WaterError,
-        match="cannot be written into a model; possible are regular, jonswap, pierson-moskowitz, level",
+        match="cannot be written into a model; "
+        "possible are regular, jonswap, pierson-moskowitz, level",
     ):
         with_water(Water(waves=Swell()))
     with pytest.raises(
@@ -302,7 +305,7 @@ def test_waves_and_methods_that_a_model_cannot_hold_are_refused():
         add_water(spec)
 
 
-# files ----------------------------------------------------------------------------------------------
+# files --------------------------------------------------------------------------------------------
 
 
 def test_a_saved_model_keeps_its_water(tmp_path):
@@ -337,7 +340,7 @@ def test_without_this_package_mujoco_says_what_is_missing(tmp_path):
     assert said.returncode == 1
 
 
-# copies, resets, other models -----------------------------------------------------------------------
+# copies, resets, other models ---------------------------------------------------------------------
 
 
 def test_copied_data_go_on_as_the_original_and_keep_their_loads():
@@ -403,7 +406,7 @@ def test_geoms_that_are_resized_in_place_displace_what_they_are_then():
     assert data.qfrc_passive[2] == pytest.approx(8.0 * small)
 
 
-# batches and rollouts -------------------------------------------------------------------------------
+# batches and rollouts -----------------------------------------------------------------------------
 
 
 HEIGHTS = np.linspace(-0.5, 0.5, 7)
@@ -481,7 +484,7 @@ def test_a_rollout_moves_as_single_simulations():
         assert np.array_equal(states[:, -1, 1 : 1 + model.nq], single)
 
 
-# its life -------------------------------------------------------------------------------------------
+# its life -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.slow
@@ -570,7 +573,7 @@ def test_a_failed_compilation_leaves_the_next_one_unharmed():
         assert stepped(compiled(sea()), 10).time > 0.0
 
 
-# scenes ---------------------------------------------------------------------------------------------
+# scenes -------------------------------------------------------------------------------------------
 
 
 def scene_of(tmp_path, text, **fields):
@@ -611,8 +614,10 @@ def test_what_the_water_refuses_is_told_as_ours(tmp_path):
     with pytest.raises(ModelError, match="no moving geom matches 'nothing'"):
         Simulation(scene_of(tmp_path, PLAIN, selection=Selection(geoms="nothing")))
     open_box = """<mujoco><asset>
-    <mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1" face="0 2 1 0 1 3 0 3 2" inertia="shell"/></asset>
-    <worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><geom type="mesh" mesh="m"/></body>
+    <mesh name="m" inertia="shell" vertex="0 0 0 1 0 0 0 1 0 0 0 1"
+      face="0 2 1 0 1 3 0 3 2"/></asset>
+    <worldbody><body><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+    <geom type="mesh" mesh="m"/></body>
     </worldbody></mujoco>"""
     with pytest.raises(MeshError, match="mesh 'm' of geom"):
         Simulation(scene_of(tmp_path, open_box))

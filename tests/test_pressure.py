@@ -1,4 +1,4 @@
-"""Wave pressure: the mean-value theorem, a published table, limits, a slow twin, and the compiled path."""
+"""Wave pressure: mean-value theorem, a published table, limits, a slow twin, the compiled path."""
 
 import math
 
@@ -108,7 +108,8 @@ def test_under_water_the_force_is_minus_volume_times_the_gradient_at_the_centre(
 
 @pytest.mark.parametrize(
     ("period", "fraction"),
-    # P14, IEA OES Task 10: sphere of 5 m, half in the water, Froude-Krylov heave force over rho g pi R^2 A
+    # P14, IEA OES Task 10: sphere of 5 m, half in the water, Froude-Krylov heave force over
+    # rho g pi R^2 A
     [
         (3, 0.094),
         (4, 0.355),
@@ -205,10 +206,12 @@ def test_under_a_slope_the_depth_alone_pushes_by_the_slope():
 
 
 def floater(draft, period, pressure):
-    """Response amplitude and phase of a slender wall-sided body that is free to heave, by simulation."""
+    """Response amplitude and phase of a slender wall-sided body, free to heave, by simulation."""
     model = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><option timestep="0.002" integrator="RK4"/><worldbody><body><joint type="slide" axis="0 0 1"/>
-        <geom type="box" size=".02 .02 1" mass="{1000 * 0.04**2 * draft}" pos="0 0 {1 - draft}"/></body></worldbody>
+        f"""<mujoco><option timestep="0.002" integrator="RK4"/><worldbody><body>
+        <joint type="slide" axis="0 0 1"/>
+        <geom type="box" size=".02 .02 1" mass="{1000 * 0.04**2 * draft}" pos="0 0 {1 - draft}"/>
+        </body></worldbody>
         </mujoco>"""
     )
     amplitude = 0.002
@@ -236,7 +239,8 @@ def floater(draft, period, pressure):
 
 @pytest.mark.parametrize("pressure", ["archimedes", "hydrostatic", "froude-krylov"])
 def test_on_long_waves_it_rides_the_surface_without_lag(pressure):
-    # P17: T = 10 T_n; of the surface alone 1 / (1 - (T_n / T)^2) = 1.010, with the pressure e^-kd of it, 1.000
+    # P17: T = 10 T_n; of the surface alone 1 / (1 - (T_n / T)^2) = 1.010, with the pressure e^-kd
+    # of it, 1.000
     draft = 0.5
     response, phase, kd = floater(draft, 10 * 2 * math.pi * math.sqrt(draft / 9.81), pressure)
     assert phase == pytest.approx(0.0, abs=1e-3)
@@ -263,8 +267,10 @@ def test_in_short_waves_the_surface_alone_lifts_a_deep_body_too_far(pressure):
 
 
 MODEL = """<mujoco><option timestep="0.01"/><worldbody><body name="a" pos="0 0 -.1"><freejoint/>
-<geom type="box" size=".5 .3 .2" mass="60" pos=".1 0 0"/><geom type="sphere" size=".2" pos="0 0 -.6" mass="20"/>
-<body pos=".6 0 0"><joint axis="0 1 0"/><geom type="capsule" size=".1 .2" mass="9"/></body></body></worldbody></mujoco>"""
+<geom type="box" size=".5 .3 .2" mass="60" pos=".1 0 0"/>
+<geom type="sphere" size=".2" pos="0 0 -.6" mass="20"/>
+<body pos=".6 0 0"><joint axis="0 1 0"/><geom type="capsule" size=".1 .2" mass="9"/>
+</body></body></worldbody></mujoco>"""
 SEA = Water(
     waves=[
         RegularWave(0.1, wavelength=3.0, direction=0.3),

@@ -245,9 +245,11 @@ def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_t
 
 def test_names_may_hold_anything(tmp_path):
     (tmp_path / "odd.xml").write_text(
-        """<mujoco><worldbody><body name="my boat/2"><freejoint/><geom name="bow \u00e9 [1]" type="box" size=".2 .1 .1"
+        """<mujoco><worldbody><body name="my boat/2"><freejoint/>
+        <geom name="bow \u00e9 [1]" type="box" size=".2 .1 .1"
         density="300"/><geom type="box" size=".05 .05 .05" pos="0 0 .15" density="300"/>
-        <geom name="total" type="box" size=".05 .05 .05" pos="0 0 -.15" density="300"/></body></worldbody></mujoco>"""
+        <geom name="total" type="box" size=".05 .05 .05" pos="0 0 -.15" density="300"/>
+        </body></worldbody></mujoco>"""
     )
     recorded(tmp_path / "run.rrd", settings=["duration=0.1", f"vehicle='{tmp_path / 'odd.xml'}'"])
     assert rerun("verify", str(tmp_path / "run.rrd")).returncode == 0

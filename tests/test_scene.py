@@ -35,7 +35,8 @@ kind = "level"
 amplitude = 0.2
 frequency = 0.1
 """
-BOX = """<mujoco model="box"><worldbody><body name="box">{joint}<geom name="box" type="box" size=".2 .15 .05" mass="4"/>
+BOX = """<mujoco model="box"><worldbody>
+<body name="box">{joint}<geom name="box" type="box" size=".2 .15 .05" mass="4"/>
 {more}</body></worldbody>{rest}</mujoco>"""
 
 
@@ -51,7 +52,7 @@ def simulation_of(folder, xml, *settings):
     return Simulation(read_scene(folder / "scene.toml", settings))
 
 
-# reading --------------------------------------------------------------------------------------------
+# reading ------------------------------------------------------------------------------------------
 
 
 def test_a_scene_is_read_into_what_it_says(folder):
@@ -91,15 +92,18 @@ def test_any_field_can_be_set(folder, setting, look):
     [
         (
             "durations=2",
-            "unknown key 'durations'; did you mean 'duration'? possible: added_mass, coefficients, cog_shift, damping",
+            "unknown key 'durations'; did you mean 'duration'? "
+            "possible: added_mass, coefficients, cog_shift, damping",
         ),
         (
             "water.densty=2",
-            "water: unknown key 'densty'; did you mean 'density'? possible: current, density, level",
+            "water: unknown key 'densty'; did you mean 'density'? "
+            "possible: current, density, level",
         ),
         (
             "water.waves.0.kind=choppy",
-            "water.waves.0: unknown kind 'choppy'; possible: jonswap, level, pierson-moskowitz, regular",
+            "water.waves.0: unknown kind 'choppy'; "
+            "possible: jonswap, level, pierson-moskowitz, regular",
         ),
         (
             "water.waves.5.amplitude=1",
@@ -166,14 +170,15 @@ def test_a_file_that_is_no_toml_is_told(folder):
 def test_an_unknown_scene_is_told_with_the_nearest():
     with pytest.raises(
         SceneError,
-        match=r"there is no scene 'auv_wave', .*; did you mean 'auv_waves'\? possible: auv_current, auv_drop_still",
+        match=r"there is no scene 'auv_wave', .*; did you mean 'auv_waves'\? "
+        "possible: auv_current, auv_drop_still",
     ):
         catalog.scene_path("auv_wave")
     with pytest.raises(SceneError, match="scene '/' is a folder"):
         catalog.scene_path("/")
 
 
-# vehicles -------------------------------------------------------------------------------------------
+# vehicles -----------------------------------------------------------------------------------------
 
 
 def test_a_vehicle_is_found_beside_its_scene(folder, monkeypatch, tmp_path_factory):
@@ -184,7 +189,8 @@ def test_a_vehicle_is_found_beside_its_scene(folder, monkeypatch, tmp_path_facto
 def test_a_missing_vehicle_is_told(folder):
     with pytest.raises(
         ModelError,
-        match=r"there is no vehicle 'bax.xml', neither a file nor one that ships; possible: bluerov2_heavy",
+        match=r"there is no vehicle 'bax.xml', neither a file nor one that ships; "
+        "possible: bluerov2_heavy",
     ):
         Simulation(read_scene(folder / "scene.toml", ["vehicle=bax.xml"]))
 
@@ -344,7 +350,8 @@ def test_a_urdf_floats_too(folder):
 def test_the_environment_is_attached_under_its_own_prefix(folder):
     (folder / "pool.xml").write_text(
         """<mujoco><worldbody><geom name="box" type="plane" size="1 1 1" pos="0 0 -1"/>
-        <body name="buoy" pos="3 0 0"><freejoint/><geom name="buoy" size=".1" mass="1"/></body></worldbody></mujoco>"""
+        <body name="buoy" pos="3 0 0"><freejoint/><geom name="buoy" size=".1" mass="1"/></body>
+        </worldbody></mujoco>"""
     )
     simulation = Simulation(
         read_scene(folder / "scene.toml", ["environment=pool.xml", "start.position=[0, 0, 0.3]"])
@@ -365,7 +372,8 @@ def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
     xml = BOX.format(joint="", more="", rest="").replace('size=".2 .15 .05"', 'size="200 100 100"')
     with pytest.raises(
         ModelError,
-        match=r"weighs 4 kg and would displace 1.64e\+10 kg of water; check the scale of its meshes",
+        match=r"weighs 4 kg and would displace 1.64e\+10 kg of water; "
+        "check the scale of its meshes",
     ):
         simulation_of(folder, xml)
 
@@ -379,7 +387,7 @@ def test_mujocos_own_fluid_is_told_as_double_drag(folder, option):
         simulation_of(folder, xml)
 
 
-# running --------------------------------------------------------------------------------------------
+# running ------------------------------------------------------------------------------------------
 
 
 def test_frames_come_at_the_record_rate(folder):
@@ -452,7 +460,7 @@ def test_touching_the_bottom_is_counted(folder):
     assert simulation.summary().first_contact == pytest.approx(0.01, abs=0.011)
 
 
-def test_a_diverging_simulation_is_told_with_time_body_and_quantity(folder, capfd):
+def test_a_diverging_simulation_is_told_with_time_body_and_quantity(folder):
     (folder / "box.xml").write_text(BOX.format(joint="<freejoint/>", more="", rest=""))
     simulation = Simulation(read_scene(folder / "scene.toml"))
     frames = simulation.frames()

@@ -1,4 +1,4 @@
-"""Sweeps: each row is what a run of its own gives, whatever was interrupted, and failures are rows."""
+"""Sweeps: a row is what a run of its own gives, after any interruption, and failures are rows."""
 
 import csv
 import dataclasses
@@ -38,7 +38,7 @@ def read(path):
         return list(csv.DictReader(file))
 
 
-# what rows hold -------------------------------------------------------------------------------------
+# what rows hold -----------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_a_grid_has_all_combinations_the_last_field_fastest():
     ]  # fmt: skip
 
 
-# going on -------------------------------------------------------------------------------------------
+# going on -----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
@@ -188,7 +188,7 @@ def test_more_draws_of_the_same_seed_go_on_from_fewer(tmp_path):
     assert len(read(more.out)) == 4
 
 
-# failures -------------------------------------------------------------------------------------------
+# failures -----------------------------------------------------------------------------------------
 
 
 def test_runs_that_fail_are_rows_with_the_reason(tmp_path):

@@ -1,4 +1,4 @@
-"""The tree of moments: its structure, its moments, and that it finds what the plain way finds, in waves too."""
+"""The tree of moments: its structure, its moments, and the plain way's answers, in waves too."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def place(mesh, seed, height):
     return position[None], turn.reshape(1, 9)
 
 
-# structure ------------------------------------------------------------------------------------------
+# structure ----------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", MESHES)
@@ -129,7 +129,7 @@ def test_the_moments_are_the_integrals(monkeypatch):
         assert found[30] == pytest.approx(np.linalg.norm(vectors, axis=1).sum(), rel=1e-12)
 
 
-# results --------------------------------------------------------------------------------------------
+# results ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -181,7 +181,7 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
     st.sampled_from([1e-2, 2e-3, 5e-4]),
     st.sampled_from(["box", "plate", "rod"]),
 )
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 def test_any_tolerance_is_kept(seed, height, tolerance, name):
     mesh = shapes.box(
         {"box": (0.5, 0.4, 0.3), "plate": (0.5, 0.5, 0.01), "rod": (0.8, 0.02, 0.02)}[name]
@@ -238,7 +238,7 @@ def test_a_tolerance_that_is_none_is_told(tolerance):
         Exact(tolerance=tolerance)
 
 
-def test_several_hulls_share_one_structure_and_do_not_mix(pair):
+def test_several_hulls_share_one_structure_and_do_not_mix():
     meshes = [MESHES["ball"], shapes.box((0.1, 0.1, 0.1)), MESHES["torus"]]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tree, "FEW", 100)

@@ -19,9 +19,11 @@ from tests import vessels
 URDF = """<robot name="robot"><link name="base"><inertial><mass value="{mass}"/>
 <inertia ixx="{inertia}" ixy="0" ixz="0" iyy="{inertia}" iyz="0" izz="{inertia}"/></inertial>
 <collision><geometry><mesh filename="{file}"/></geometry></collision></link>
-<link name="leg"><inertial><mass value="1"/><inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial>
+<link name="leg"><inertial><mass value="1"/>
+<inertia ixx=".1" ixy="0" ixz="0" iyy=".1" iyz="0" izz=".1"/></inertial>
 <collision><geometry><cylinder radius=".03" length=".3"/></geometry></collision></link>
-<joint name="hip" type="revolute"><parent link="base"/><child link="leg"/><origin xyz="0 .2 -.1"/><axis xyz="0 1 0"/>
+<joint name="hip" type="revolute"><parent link="base"/><child link="leg"/>
+<origin xyz="0 .2 -.1"/><axis xyz="0 1 0"/>
 <limit lower="-1" upper="1" effort="9" velocity="9"/></joint></robot>"""
 
 
@@ -96,7 +98,8 @@ def test_files_of_a_package_are_found_on_the_ros_path(tmp_path, monkeypatch):
     )
     refused(
         path,
-        "no folder 'my_robot' above it or on ROS_PACKAGE_PATH holds that file; put the package there",
+        "no folder 'my_robot' above it or on ROS_PACKAGE_PATH holds that file; "
+        "put the package there",
     )
     monkeypatch.setenv("ROS_PACKAGE_PATH", f"/nowhere:{tmp_path / 'elsewhere'}")
     assert inspect_model(path)[0]["problems"] == []
@@ -107,7 +110,8 @@ def test_a_base_without_inertia_is_told(tmp_path):
     path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=0.0, inertia=0.1))
     refused(
         path,
-        "a body that floats needs mass and inertia: give it an <inertial>, or bound them by <compiler boundmass",
+        "a body that floats needs mass and inertia: give it an <inertial>, "
+        "or bound them by <compiler boundmass",
     )
 
 
@@ -122,7 +126,8 @@ def test_a_mesh_in_ascii_is_told(tmp_path):
 
 FISH = """<mujoco><option gravity="{gravity}"><flag gravity="{flag}"/></option><worldbody>
 <geom name="pond" type="plane" size="5 5 .1"/><body name="fish"><freejoint/>
-<geom type="ellipsoid" size=".1 .05 .08" density="900"/><body name="tail" pos="-.12 0 0"><joint axis="0 0 1"/>
+<geom type="ellipsoid" size=".1 .05 .08" density="900"/>
+<body name="tail" pos="-.12 0 0"><joint axis="0 0 1"/>
 <geom type="ellipsoid" size=".04 .01 .05" density="900"/></body></body></worldbody></mujoco>"""
 
 
@@ -157,8 +162,10 @@ def hull(tmp_path, closed):
     return write(
         tmp_path,
         "tanker.xml",
-        '<mujoco><asset><mesh name="tanker" file="tanker.obj" inertia="shell"/></asset><worldbody><body name="tanker">'
-        '<inertial pos=".0393 0 .025" mass="92.3" diaginertia="2 30 30"/><geom name="shell" type="mesh" mesh="tanker"/>'
+        '<mujoco><asset><mesh name="tanker" file="tanker.obj" inertia="shell"/></asset>'
+        '<worldbody><body name="tanker">'
+        '<inertial pos=".0393 0 .025" mass="92.3" diaginertia="2 30 30"/>'
+        '<geom name="shell" type="mesh" mesh="tanker"/>'
         "</body></worldbody></mujoco>",
     )
 

@@ -69,7 +69,7 @@ def test_without_a_display_the_viewer_says_so():
         env=environment, capture_output=True, text=True, check=False, timeout=120,
     )  # fmt: skip
     assert done.returncode == 1
-    assert (
-        done.stderr
-        == "error: MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none\n"
+    assert done.stderr == (
+        "error: MuJoCo's viewer needs a display, and there is none here; "
+        "use 'run', which needs none\n"
     )

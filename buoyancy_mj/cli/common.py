@@ -13,15 +13,14 @@ import mujoco
 import typer
 from rich.console import Console
 
+from buoyancy_mj import __version__
 from buoyancy_mj.errors import BuoyancyError
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.records import field_docs
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import Scene, read_scene
 
-app = typer.Typer(
-    help="Put water into MuJoCo.", no_args_is_help=True, add_completion=False, rich_markup_mode=None
-)
+app = typer.Typer(no_args_is_help=True, rich_markup_mode=None)
 # what users name may hold brackets
 out, err = Console(markup=False), Console(stderr=True, markup=False)
 
@@ -51,6 +50,23 @@ METHOD = Annotated[
     typer.Option(help="How the submersion is found: exact (the default), convex_hull or sections."),
 ]
 TIMESTEP = Annotated[float | None, typer.Option(help="MuJoCo's timestep [s].")]
+
+
+def print_version(wanted: bool) -> None:
+    """Print the version of this package, and end."""
+    if wanted:
+        typer.echo(f"buoyancy-mj {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def main(
+    _version: Annotated[
+        bool,
+        typer.Option("--version", callback=print_version, is_eager=True, help="Print the version."),
+    ] = False,
+) -> None:
+    """Put water into MuJoCo."""
 
 
 def report_errors(command: Callable[..., None]) -> Callable[..., None]:
