@@ -377,8 +377,8 @@ def test_seas_that_break_are_told_with_the_number(wave, message):
     model = vessels.box()
     if isinstance(wave, RegularWave) and wave.depth == 3.0:
         # 0.142 tanh(k h) wavelengths
-        assert water.doubts == ()
-        assert RegularWave(1.4, wavelength=50.0, depth=3.0).doubt.endswith(message)
+        assert water.warnings == ()
+        assert RegularWave(1.4, wavelength=50.0, depth=3.0).warning.endswith(message)
         return
     with pytest.warns(BuoyancyWarning, match=message):
         Buoyancy(model, water)

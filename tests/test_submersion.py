@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, submerge
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.mesh import refine
+from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.submersion import exact
 from buoyancy_mj.submersion import submerge as submersion
 from tests import naive

@@ -305,8 +305,8 @@ def parse_pressure(name: str, method: Method) -> Pressure:
 
 def _doubt(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
     """Tell of waves that break, and refuse water in which what floats would be aground."""
-    for doubt in water.doubts:
-        warnings.warn(f"the water has {doubt}", BuoyancyWarning, stacklevel=3)
+    for warning in water.warnings:
+        warnings.warn(f"the water has {warning}", BuoyancyWarning, stacklevel=3)
     shallowest = float(np.min(water.rows[:, 5], initial=np.inf))
     for body in {hull.body for hull in hulls}:
         root = int(model.body_rootid[body])

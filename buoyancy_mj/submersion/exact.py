@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MethodError
 from buoyancy_mj.kernels import clip, local, pressure, waterplane
-from buoyancy_mj.meshes.mesh import TriMesh, refine
-from buoyancy_mj.meshes.tree import Tree, grow_tree
+from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.meshes.refinement import refine
+from buoyancy_mj.meshes.tree import Tree, build_tree
 from buoyancy_mj.sea.water import Water
 
 MOST_TRIANGLES = 200_000
@@ -258,7 +259,7 @@ def _tree(mesh: TriMesh, edge: float) -> Tree:
     """The tree of a mesh with edges no longer than `edge`; once for as long as the mesh lives."""
     trees = _TREES.setdefault(mesh, {})
     if edge not in trees:
-        trees[edge] = grow_tree(*refine(mesh.vertices, mesh.faces, edge))
+        trees[edge] = build_tree(*refine(mesh.vertices, mesh.faces, edge))
     return trees[edge]
 
 
