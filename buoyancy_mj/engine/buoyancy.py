@@ -25,6 +25,7 @@ from buoyancy_mj.loads.drag import Drag, resolve_damping
 from buoyancy_mj.loads.loads import Loads, Portion
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
+from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.methods import Method, parse_method
 
 
@@ -88,16 +89,14 @@ class Buoyancy:
         self.hulls = find_hulls(model, geoms, bodies, hull=hull, fill=fill)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
-        frames = [hull.geom for hull in self.hulls]
-        turns = [hull.body_from_geom for hull in self.hulls]
-        self.packed = self.method.pack(
+        hulls = HullSet(
             [hull.mesh for hull in self.hulls],
-            frames,
-            self._owners,
-            self.water,
-            turns,
-            [hull.fill for hull in self.hulls],
+            frames=[hull.geom for hull in self.hulls],
+            bodies=self._owners,
+            turns=[hull.body_from_geom for hull in self.hulls],
+            fills=[hull.fill for hull in self.hulls],
         )
+        self.packed = self.method.pack(hulls, self.water)
         _doubt(model, self.water, self.hulls)
         self.added_mass = resolve_added_mass(model, self.hulls, self.water.density, added_mass)
         """Added mass of those bodies that have one."""
