@@ -53,6 +53,7 @@ from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.vessel import build_vessel
 from buoyancy_mj.submersion import exact
+from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.viz.recording import Recording
 
 try:
@@ -145,7 +146,7 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
         times["Capytaine"] = median_time(
             by_capytaine, least, fewest=1 if len(solid.faces) > 10_000 else 3
         )
-    packed = exact.PackedHulls([mesh], [0], [0], Water())
+    packed = exact.PackedHulls(HullSet([mesh]), Water())
     arrays = [*packed.arrays.values(), packed.results, mesh.vertices, mesh.faces]
     times["bytes per triangle"] = sum(values.nbytes for values in arrays) / len(solid.faces)
     return times
@@ -178,9 +179,9 @@ def tree_ratios(triangles: int, least: float) -> dict[str, float]:
         for surface, water in (("still", still), ("waves", waves)):
             mesh = TriMesh(solid.vertices, solid.faces)
             # as it is chosen, and without the choice
-            ways = [exact.PackedHulls([mesh], [0], [0], water)]
+            ways = [exact.PackedHulls(HullSet([mesh]), water)]
             with mock.patch.object(tree, "FEW", 10**9):
-                ways.append(exact.PackedHulls([mesh], [0], [0], water))
+                ways.append(exact.PackedHulls(HullSet([mesh]), water))
             # turn about, so that both see the same machine
             times: list[list[float]] = [[], []]
             started = time.perf_counter()

@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import MeshError, TriMesh
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.mesh import refine
+from buoyancy_mj.meshes.refinement import refine
 from tests.naive import trimesh_hull
 
 

@@ -31,9 +31,10 @@ from buoyancy_mj import (
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.submersion import convex_hull
-from buoyancy_mj.submersion.convex_hull import hull_moments
+from buoyancy_mj.submersion.cross_sections import cut_sections, integrate
+from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.methods import METHODS
-from buoyancy_mj.submersion.sections import integrate, sections
+from buoyancy_mj.submersion.quickhull import hull_moments
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -231,7 +232,7 @@ def poses_of(mesh, places, turns):
 
 
 def run(method, mesh, places, turns, water=None):
-    packed = method.pack([mesh], [0], [0], water or Water())
+    packed = method.pack(HullSet([mesh]), water or Water())
     volumes = [packed.submerge(*pose)[0, 0] for pose in poses_of(mesh, places, turns)]
     return np.array(volumes), packed.counts
 
@@ -278,7 +279,7 @@ def test_a_body_that_turns_loses_vertices_until_the_next_sort():
 
 def test_poses_set_by_hand_and_time_set_back_sort_anew():
     mesh = CONVEX["ellipsoid"]
-    packed = ConvexHull().pack([mesh], [0], [0], Water())
+    packed = ConvexHull().pack(HullSet([mesh]), Water())
     sorts = 0
     for seed, time, fresh in (
         (0, 0.0, True),
@@ -304,7 +305,7 @@ def test_runs_that_take_turns_keep_orders_of_their_own():
     ]
     places = [(0.0, 0.0, 0.05)] * 30
     alone = [run(ConvexHull(), mesh, places, turn)[0] for turn in turns]
-    packed = ConvexHull().pack([mesh], [0], [0], Water())
+    packed = ConvexHull().pack(HullSet([mesh]), Water())
     together = [
         [packed.submerge(*pose, number)[0, 0] for number, pose in enumerate(poses)]
         for poses in zip(*(poses_of(mesh, places, turn) for turn in turns), strict=True)
@@ -313,7 +314,7 @@ def test_runs_that_take_turns_keep_orders_of_their_own():
 
 
 def test_runs_that_ended_are_forgotten():
-    packed = ConvexHull().pack([CONVEX["box"]], [0], [0], Water())
+    packed = ConvexHull().pack(HullSet([CONVEX["box"]]), Water())
     for number in range(200):
         packed.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), 0.0, number)
     assert len(packed._runs) == convex_hull.MOST_RUNS
@@ -334,7 +335,7 @@ def test_the_cuts_are_found_from_a_walk_too():
 @pytest.mark.parametrize("shape", SHAPES)
 def test_sections_are_those_of_an_independent_slice(shape):
     mesh = SHAPES[shape].transformed(POSES[2][1], (0.4, -0.3, 0.0))
-    s, rows, _ = sections(
+    s, rows, _ = cut_sections(
         mesh.vertices, mesh.faces, float(np.ptp(mesh.vertices[:, 2])) / 17.3, np.inf
     )
     for height, (area, u, v, along) in zip(s[1:-1], rows[1:-1], strict=True):
@@ -347,7 +348,7 @@ def test_sections_are_those_of_an_independent_slice(shape):
 
 def test_flat_ends_are_counted_at_both():
     box = shapes.box((0.4, 0.3, 0.2))
-    s, rows, _ = sections(box.vertices, box.faces, 0.025, np.inf)
+    s, rows, _ = cut_sections(box.vertices, box.faces, 0.025, np.inf)
     np.testing.assert_allclose(rows[:, 0], 4 * 0.4 * 0.3, rtol=1e-8)
     assert len(s) == 17
     assert integrate(rows, s, "trapezoid")[-1, 0] == pytest.approx(box.volume, rel=1e-8)
@@ -368,7 +369,7 @@ def test_the_rules_converge_with_their_order(rule, order):
 
 
 def test_the_iterations_are_the_sections_up_to_the_water():
-    packed = Sections(step=0.01).pack([CONVEX["box"]], [0], [0], Water())
+    packed = Sections(step=0.01).pack(HullSet([CONVEX["box"]]), Water())
     packed.submerge(np.array([[0.0, 0.0, 0.05]]), np.eye(3).reshape(1, 9), 0.0)
     # the box's bottom lies 0.15 m deep
     # each section of a box meets its 8 side triangles, but for those just at their corners
@@ -379,7 +380,7 @@ def test_the_iterations_are_the_sections_up_to_the_water():
         "tabulated": 0,
         "look_ups": 0,
     }
-    table = Sections(step=0.01, axis=(0, 0, 1)).pack([CONVEX["box"]], [0], [0], Water())
+    table = Sections(step=0.01, axis=(0, 0, 1)).pack(HullSet([CONVEX["box"]]), Water())
     for _ in range(3):
         table.submerge(np.array([[0.0, 0.0, 0.05]]), np.eye(3).reshape(1, 9), 0.0)
     assert table.counts == {
@@ -513,7 +514,7 @@ def test_what_makes_no_sense_is_told(make, message):
     "position", [(np.nan, np.nan, np.nan), (0.0, 0.0, np.inf), (0.0, 0.0, -np.inf)]
 )
 def test_a_pose_that_left_the_finite_numbers_gives_no_number(method, position):
-    packed = method.pack([CONVEX["box"]], [0], [0], Water())
+    packed = method.pack(HullSet([CONVEX["box"]]), Water())
     assert np.isnan(packed.submerge(np.array([position]), np.eye(3).reshape(1, 9), 0.0)[0, 0])
     assert (
         packed.submerge(np.zeros((1, 3)) - [0, 0, 1.0], np.eye(3).reshape(1, 9), 0.01)[0, 0] > 0.0

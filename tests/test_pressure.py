@@ -22,6 +22,7 @@ from buoyancy_mj.kernels.waves import head
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes.scene import scene_from_table
 from buoyancy_mj.submersion.exact import PackedHulls
+from buoyancy_mj.submersion.hull_set import HullSet
 from tests import vessels
 
 BALL = trimesh.creation.icosphere(subdivisions=4)
@@ -31,7 +32,7 @@ BALL = TriMesh(BALL.vertices * (4 / 3 * math.pi / BALL.volume) ** (1 / 3), BALL.
 
 def press(mesh, water, place, turn=None, time=0.0, dynamic=True):
     """Force over rho g [m^3] and torque over rho g about the frame's origin [m^4]."""
-    packed = PackedHulls([mesh], [0], [0], water)
+    packed = PackedHulls(HullSet([mesh]), water)
     rotation = np.eye(3) if turn is None else turn
     return packed.press(np.array([place], float), rotation.reshape(1, 9), time, dynamic=dynamic)[0]
 
@@ -171,7 +172,7 @@ def test_on_still_water_it_is_archimedes(seed):
     rng = np.random.default_rng(seed)
     mesh, place = vessels.dented(seed), rng.uniform(-0.5, 0.5, 3) + [30.0, -20.0, 0.0]
     turn = trimesh.transformations.random_rotation_matrix(rng.uniform(size=3))[:3, :3]
-    wet = PackedHulls([mesh], [0], [0], Water()).submerge(place[None], turn.reshape(1, 9), 0.0)[0]
+    wet = PackedHulls(HullSet([mesh]), Water()).submerge(place[None], turn.reshape(1, 9), 0.0)[0]
     row = press(mesh, Water(), place, turn)
     assert row[:3] == pytest.approx([0.0, 0.0, wet[0]], abs=1e-10 * mesh.volume)
     assert row[3:] == pytest.approx(

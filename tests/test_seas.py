@@ -25,6 +25,7 @@ from buoyancy_mj.scenes.scene import scene_from_table
 from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.submersion.exact import PackedHulls
+from buoyancy_mj.submersion.hull_set import HullSet
 from tests import naive, vessels
 
 HOUR = np.arange(0.0, 3600.0, 0.1)
@@ -277,7 +278,7 @@ def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
 def test_a_hull_in_a_sea_displaces_what_the_sum_over_small_triangles_says(components):
     water = Water(waves=JonswapSea(0.6, 4.0, spreading=8.0, components=components))
     mesh, turn = vessels.dented(3), naive.roll(0.4)
-    packed = PackedHulls([mesh], [0], [0], water)
+    packed = PackedHulls(HullSet([mesh]), water)
     fine = trimesh.Trimesh(mesh.vertices, mesh.faces).subdivide().subdivide().subdivide()
     for time in (0.0, 1.1, 2.7):
         place = np.array([0.4, -0.3, float(water.elevation(0.4, -0.3, time)) - 0.05])
@@ -296,7 +297,7 @@ def test_waves_gathered_and_waves_one_by_one_push_alike():
     mesh, turn = shapes.box((0.5, 0.3, 0.2)), naive.roll(0.4).reshape(1, 9)
     for z in (0.0, -0.3, -1.0):
         for time in (0.2, 0.9):
-            rows = [PackedHulls([mesh], [0], [0], Water(waves=w)) for w in (one, many)]
+            rows = [PackedHulls(HullSet([mesh]), Water(waves=w)) for w in (one, many)]
             a, b = (packed.submerge(np.array([[0.1, 0.2, z]]), turn, time)[0] for packed in rows)
             assert b[:5] == pytest.approx(a[:5], abs=1e-6)
             a, b = (
@@ -378,8 +379,8 @@ def test_seas_that_break_are_told_with_the_number(wave, message):
     model = vessels.box()
     if isinstance(wave, RegularWave) and wave.depth == 3.0:
         # 0.142 tanh(k h) wavelengths
-        assert water.doubts == ()
-        assert RegularWave(1.4, wavelength=50.0, depth=3.0).doubt.endswith(message)
+        assert water.warnings == ()
+        assert RegularWave(1.4, wavelength=50.0, depth=3.0).warning.endswith(message)
         return
     with pytest.warns(BuoyancyWarning, match=message):
         Buoyancy(model, water)

@@ -9,9 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, submerge
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.mesh import refine
+from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.submersion import exact
 from buoyancy_mj.submersion import submerge as submersion
+from buoyancy_mj.submersion.hull_set import HullSet
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -309,7 +310,7 @@ def test_in_steep_waves_four_hulls_long_the_error_is_below_a_ten_thousandth(name
     wavelength = 8.0 * mesh.radius
     water = Water(waves=RegularWave(0.07 * wavelength, wavelength=wavelength))
     packed, reference = (
-        exact.PackedHulls([mesh], [0], [0], water, tolerance) for tolerance in (2e-3, 2e-5)
+        exact.PackedHulls(HullSet([mesh]), water, tolerance) for tolerance in (2e-3, 2e-5)
     )
     for seed in range(20):
         rng = np.random.default_rng(seed)
@@ -353,7 +354,7 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
 
 
 def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
-    packed = exact.PackedHulls([TORUS], [0], [0], Water())
+    packed = exact.PackedHulls(HullSet([TORUS]), Water())
     row = packed.submerge(np.array([[0.0, 0.0, np.nan]]), np.eye(3).reshape(1, 9), 0.0)[0]
     assert np.isnan(row).all()
 

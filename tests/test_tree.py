@@ -11,6 +11,7 @@ from buoyancy_mj import Exact, LevelOscillation, MethodError, RegularWave, TriMe
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes import shapes, tree
 from buoyancy_mj.submersion import exact
+from buoyancy_mj.submersion.hull_set import HullSet
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -47,7 +48,7 @@ def packed(mesh, water, monkeypatch, *, few, tolerance=2e-3):
     """A packed mesh, by a tree (few = 0) or by the plain way."""
     monkeypatch.setattr(tree, "FEW", few)
     # a mesh of its own, since trees stay with theirs
-    return exact.PackedHulls([TriMesh(mesh.vertices, mesh.faces)], [0], [0], water, tolerance)
+    return exact.PackedHulls(HullSet([TriMesh(mesh.vertices, mesh.faces)]), water, tolerance)
 
 
 @pytest.fixture
@@ -157,7 +158,7 @@ def test_the_tree_finds_what_the_plain_way_finds(name, water, pair):
 @pytest.mark.parametrize("name", [name for name in MESHES if name != "far from its frame"])
 def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name):
     mesh, fine = MESHES[name], subdivided(MESHES[name], 1)
-    hulls = exact.PackedHulls([mesh], [0], [0], WAVES)
+    hulls = exact.PackedHulls(HullSet([mesh]), WAVES)
     for seed in range(3):
         position, turn = place(mesh, seed, 0.15 * np.sin(seed) - 0.05)
         volume, moments = naive.directly(fine, position[0], turn.reshape(3, 3), WAVES, 0.1 * seed)
@@ -188,7 +189,7 @@ def test_any_tolerance_is_kept(seed, height, tolerance, name):
     )
     pose = place(mesh, seed, height)
     rough, fine = (
-        exact.PackedHulls([mesh], [0], [0], WAVES, t).submerge(*pose, 0.0)[0]
+        exact.PackedHulls(HullSet([mesh]), WAVES, t).submerge(*pose, 0.0)[0]
         for t in (tolerance, tolerance / 100)
     )
     assert rough[0] == pytest.approx(fine[0], abs=tolerance * mesh.volume)
@@ -205,7 +206,7 @@ def test_a_plate_that_lies_flat_in_a_wave_keeps_its_tolerance(tilt):
     for height in (-0.022, -0.02, -0.018, 0.0, 0.01):
         position = np.array([[0.0, 0.0, 0.02 + height]])
         rows = [
-            exact.PackedHulls([plate], [0], [0], water, t).submerge(
+            exact.PackedHulls(HullSet([plate]), water, t).submerge(
                 position, naive.roll(tilt).reshape(1, 9), 0.0
             )[0]
             for t in (2e-3, 1e-4)
@@ -216,7 +217,7 @@ def test_a_plate_that_lies_flat_in_a_wave_keeps_its_tolerance(tilt):
 def test_a_long_body_in_short_waves_is_right_too():
     # the phase turns six times over its half length
     water = Water(waves=RegularWave(0.03, wavelength=0.7))
-    hulls = exact.PackedHulls([shapes.box((2.0, 0.05, 0.05))], [0], [0], water)
+    hulls = exact.PackedHulls(HullSet([shapes.box((2.0, 0.05, 0.05))]), water)
     for time in np.linspace(0.0, 0.5, 7):
         wet = hulls.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), time)[0]
         volume, centroid = naive.columns((2.0, 0.05, 0.05), np.zeros(3), water, time)
@@ -227,7 +228,7 @@ def test_a_long_body_in_short_waves_is_right_too():
 @pytest.mark.slow
 def test_waves_steeper_than_any_sea_cost_no_eternity():
     hulls = exact.PackedHulls(
-        [shapes.box((0.5, 0.4, 0.3))], [0], [0], Water(waves=RegularWave(1e5, wavelength=1e-3))
+        HullSet([shapes.box((0.5, 0.4, 0.3))]), Water(waves=RegularWave(1e5, wavelength=1e-3))
     )
     assert np.isfinite(hulls.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), 0.1)[0, 0])
 
@@ -242,12 +243,12 @@ def test_several_hulls_share_one_structure_and_do_not_mix():
     meshes = [MESHES["ball"], shapes.box((0.1, 0.1, 0.1)), MESHES["torus"]]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tree, "FEW", 100)
-        together = exact.PackedHulls(meshes, [0, 1, 2], [0, 0, 0], Water())
+        together = exact.PackedHulls(HullSet(meshes, bodies=[0, 0, 0]), Water())
         positions = np.array([[0.0, 0.0, 0.1], [3.0, 0.0, 0.03], [-3.0, 1.0, -0.05]])
         turns = Rotation.random(3, random_state=5).as_matrix().reshape(3, 9)
         found = together.submerge(positions, turns, 0.0).copy()
         for mesh, position, turn, row in zip(meshes, positions, turns, found, strict=True):
-            alone = exact.PackedHulls([mesh], [0], [0], Water()).submerge(
+            alone = exact.PackedHulls(HullSet([mesh]), Water()).submerge(
                 position[None], turn[None], 0.0
             )[0]
             np.testing.assert_array_equal(row, alone)

@@ -9,7 +9,7 @@ import numpy as np
 import trimesh
 
 from buoyancy_mj import TriMesh, repair
-from buoyancy_mj.meshes.mesh import open_edges
+from buoyancy_mj.meshes.surface import boundary_edges
 from tests.naive import trimesh_hull
 
 DATA = Path(__file__).parent / "data"
@@ -92,7 +92,7 @@ def tanker(freeboard=5.0):
     faces = faces[
         (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
     ]
-    edges = open_edges(faces)
+    edges = boundary_edges(faces)
     a, b = edges[(places[edges, 2] > -1e-6).all(axis=1)].T
     n = len(places)
     vertices = np.vstack([places, places + [0.0, 0.0, freeboard], [[0.0, 0.0, freeboard]]])

@@ -195,7 +195,7 @@ def _repair(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection, path:
             if asset in mended:
                 continue
             mended[asset] = was.mesh
-            change = was.mesh.volume - was.volume_as_is
+            change = was.mesh.volume - was.original_volume
             told = (
                 f"mended {was.name}: {was.mesh.volume:.4g} m^3, {change:+.3g} m^3 against as it was"
             )

@@ -27,6 +27,7 @@ from buoyancy_mj.loads.loads import Loads, Portion
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.settings import Options, Settings, settings_with
+from buoyancy_mj.submersion.hull_set import HullSet
 
 
 class Buoyancy(ReadOnly):
@@ -73,16 +74,14 @@ class Buoyancy(ReadOnly):
         self.hulls = find_hulls(model, self.settings.selection, bodies)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
-        frames = [hull.geom for hull in self.hulls]
-        turns = [hull.body_from_geom for hull in self.hulls]
-        self.packed = self.settings.method.pack(
+        hulls = HullSet(
             [hull.mesh for hull in self.hulls],
-            frames,
-            self._owners,
-            self.water,
-            turns,
-            [hull.fill for hull in self.hulls],
+            frames=[hull.geom for hull in self.hulls],
+            bodies=self._owners,
+            turns=[hull.body_from_geom for hull in self.hulls],
+            fills=[hull.fill for hull in self.hulls],
         )
+        self.packed = self.settings.method.pack(hulls, self.water)
         _doubt(model, self.water, self.hulls)
         self.added_mass = resolve_added_mass(
             model, self.hulls, self.water.density, self.settings.added_mass
@@ -278,8 +277,8 @@ class Buoyancy(ReadOnly):
 
 def _doubt(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
     """Tell of waves that break, and refuse water in which what floats would be aground."""
-    for doubt in water.doubts:
-        warnings.warn(f"the water has {doubt}", BuoyancyWarning, stacklevel=3)
+    for warning in water.warnings:
+        warnings.warn(f"the water has {warning}", BuoyancyWarning, stacklevel=3)
     shallowest = float(np.min(water.rows[:, 5], initial=np.inf))
     for body in {hull.body for hull in hulls}:
         root = int(model.body_rootid[body])

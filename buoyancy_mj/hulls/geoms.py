@@ -20,8 +20,9 @@ from buoyancy_mj.hulls.selection import (
     parse_shapes,
 )
 from buoyancy_mj.meshes import shapes
+from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.mesh import TriMesh
-from buoyancy_mj.meshes.repair import Diagnosis, diagnose, wrap_convex
+from buoyancy_mj.meshes.repair import diagnose
 
 _MESH, _BOX, _SPHERE, _ELLIPSOID, _CYLINDER, _CAPSULE = SOLIDS
 
@@ -141,7 +142,9 @@ def _mesh(
         return found.mesh
     arrays = read_geom_mesh(model, geom)
     assert arrays is not None
-    known[key] = wrap_convex(arrays[0], describe_mesh(model, geom)) if is_mesh else TriMesh(*arrays)
+    known[key] = (
+        shapes.convex_hull(arrays[0], describe_mesh(model, geom)) if is_mesh else TriMesh(*arrays)
+    )
     return known[key]
 
 

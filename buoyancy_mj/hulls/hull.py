@@ -11,7 +11,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning
-from buoyancy_mj.meshes.mesh import TriMesh, to_manifold
+from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.meshes.surface import to_manifold
 
 _Solid = Callable[["Hull"], manifold3d.Manifold]
 OVERLAP = 1e-6

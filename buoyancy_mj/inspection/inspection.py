@@ -22,8 +22,10 @@ from buoyancy_mj.hulls.selection import (
     parse_fills,
     parse_shapes,
 )
-from buoyancy_mj.meshes.mesh import TriMesh, to_manifold
-from buoyancy_mj.meshes.repair import Diagnosis, wrap_convex
+from buoyancy_mj.meshes.diagnosis import Diagnosis
+from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.meshes.shapes import convex_hull
+from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.balance import NEUTRAL, find_draft
 from buoyancy_mj.statics.equilibrium import Equilibrium, find_rest, find_stable_rests
@@ -225,7 +227,7 @@ def _part(
         else:
             try:
                 mesh = (
-                    wrap_convex(arrays[0], f"geom '{geom_name(model, geom)}'")
+                    convex_hull(arrays[0], f"geom '{geom_name(model, geom)}'")
                     if convex
                     else TriMesh(*arrays)
                 )
@@ -255,7 +257,7 @@ def _part(
 
 def _walls(mesh: TriMesh) -> list[str]:
     """A closed surface with two sides, whose inside the sea may enter."""
-    whole = wrap_convex(mesh.compact[0]).volume
+    whole = convex_hull(mesh.compact[0]).volume
     share, wall = mesh.volume / whole, 2.0 * mesh.volume / mesh.area
     if share < HOLLOW and wall < THIN * whole ** (1.0 / 3.0):
         return [

@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from buoyancy_mj.inspection.inspection import Floating, Inspection, Part, Share
-from buoyancy_mj.meshes.repair import Diagnosis
+from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.statics.equilibrium import Equilibrium
 from buoyancy_mj.statics.righting import RightingArm
 
@@ -166,18 +166,18 @@ def _state(mesh: Diagnosis) -> str:
     """What was found of a mesh, in a few words."""
     words = ["watertight" if mesh.pieces and not mesh.holes else "open"]
     if mesh.holes:
-        longest = max(hole.length for hole in mesh.holes)
+        longest = max(hole.perimeter for hole in mesh.holes)
         words = [
-            f"{len(mesh.holes)} holes, to {_number(longest)} m round, {_number(1e3 * mesh.doubt)} l in doubt"
+            f"{len(mesh.holes)} holes, to {_number(longest)} m round, {_number(1e3 * mesh.uncertain_volume)} l in doubt"
         ]
-    crossing = 1e3 * (mesh.doubled + mesh.inside_out)
+    crossing = 1e3 * (mesh.doubled_volume + mesh.inside_out_volume)
     for count, what in (
         (mesh.backwards, f"{mesh.backwards} wound backwards"),
         (mesh.inverted, f"{mesh.inverted} inside out"),
         (mesh.degenerate, f"{mesh.degenerate} degenerate"),
         (mesh.duplicates, f"{mesh.duplicates} doubled"),
         (mesh.shells, f"{mesh.shells} inner shells"),
-        (mesh.joined, f"pieces joined, {_number(1e3 * mesh.joined)} l less"),
+        (mesh.joined_volume, f"pieces joined, {_number(1e3 * mesh.joined_volume)} l less"),
         (crossing, f"crosses itself, {_number(crossing)} l"),
         (mesh.refusal, "refused"),
     ):

@@ -1,5 +1,5 @@
 """Closed triangle meshes.
 
-Vertices and faces in; a `TriMesh` that bounds a volume, repaired where it can be, and its tree out.
+In: vertices and faces. Out: a `TriMesh` that bounds a volume, repaired where possible; its tree.
 Imports: kernels, errors.
 """

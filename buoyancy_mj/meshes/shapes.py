@@ -1,17 +1,19 @@
-"""MuJoCo's primitive geoms as meshes, scaled so that their volume is the true one.
+"""MuJoCo's primitive geoms, and convex hulls, as closed meshes.
 
-A faceted solid inscribed in a round one is too small; scaling makes the volume exact and leaves a
-draft or a centroid wrong by less than 0.1 % of the size at the resolution used here.
+A faceted solid inscribed in a round one is too small. It is scaled until its volume is the true
+one, which leaves a draft or a centroid wrong by less than 0.1 % of the size at this resolution.
 """
 
 import numpy as np
+import scipy.spatial
 import trimesh
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from buoyancy_mj.errors import MeshError
 from buoyancy_mj.meshes.mesh import TriMesh
 
 SUBDIVISIONS = 4
-"""Of an icosahedron for a sphere or an ellipsoid: 5120 triangles."""
+"""Subdivisions of an icosahedron for a sphere or an ellipsoid: 5120 triangles."""
 SECTIONS = 64
 """Facets around a cylinder or a capsule."""
 
@@ -36,24 +38,41 @@ def sphere(radius: float) -> TriMesh:
 
 def cylinder(radius: float, half_length: float) -> TriMesh:
     """A cylinder along z from its radius and half length [m]."""
-    solid = _revolved([[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]], np.pi * 2.0)
+    solid = _revolve([[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]], np.pi * 2.0)
     return TriMesh(solid.vertices * [radius, radius, half_length], solid.faces)
 
 
 def capsule(radius: float, half_length: float) -> TriMesh:
     """A capsule along z from its radius and the half length [m] of its cylindrical part."""
+    # a quarter circle in units of the radius; the poles lie on the axis exactly
     angle = np.linspace(0.0, 0.5 * np.pi, SECTIONS // 4 + 1)
-    # in radii; the poles lie on the axis exactly
     cap = np.column_stack([np.cos(angle), half_length / radius + np.sin(angle)])
     cap[-1, 0] = 0.0
-    solid = _revolved(
-        np.vstack([cap[::-1] * [1.0, -1.0], cap]), np.pi * (2.0 * half_length / radius + 4.0 / 3.0)
-    )
+
+    # the profile from pole to pole, and the volume that it must have
+    profile = np.vstack([cap[::-1] * [1.0, -1.0], cap])
+    solid = _revolve(profile, np.pi * (2.0 * half_length / radius + 4.0 / 3.0))
     return TriMesh(solid.vertices * radius, solid.faces)
 
 
-def _revolved(profile: ArrayLike, volume: float) -> TriMesh:
-    """A profile (n, 2) of radius and height turned about z, widened until it has `volume`."""
+def convex_hull(vertices: NDArray[np.float64], name: str = "mesh") -> TriMesh:
+    """The convex hull of vertices (n, 3) [m]: an approximation for meshes that bound no volume.
+
+    Raises:
+        MeshError: the vertices lie in a plane; the message calls them `name`.
+    """
+    try:
+        solid = trimesh.convex.convex_hull(vertices)
+    except scipy.spatial.QhullError as error:
+        raise MeshError(
+            f"{name}: it is flat and has no convex hull; give it thickness, or leave the geom out"
+        ) from error
+    return TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))
+
+
+def _revolve(profile: ArrayLike, volume: float) -> TriMesh:
+    """Revolve a profile (n, 2) of radius and height about z, and widen it to a volume."""
+    # the poles, and a ring of vertices for each point of the profile between them
     r, z = np.asarray(profile, float).T
     turn = 2.0 * np.pi * np.arange(SECTIONS) / SECTIONS
     rings = np.stack([np.outer(r[1:-1], np.cos(turn)), np.outer(r[1:-1], np.sin(turn))], axis=-1)
@@ -61,17 +80,21 @@ def _revolved(profile: ArrayLike, volume: float) -> TriMesh:
     vertices = np.vstack(
         [[0.0, 0.0, z[0]], np.column_stack([rings.reshape(-1, 2), heights]), [0.0, 0.0, z[-1]]]
     )
-    # around each pole a fan, between two rings a band
+
+    # around each pole a fan
     first = 1 + SECTIONS * np.arange(len(r) - 2)[:, None] + np.arange(SECTIONS)
     after = np.roll(first, -1, axis=1)
     bottom = np.column_stack([np.zeros(SECTIONS, int), after[0], first[0]])
     top = np.column_stack([np.full(SECTIONS, len(vertices) - 1), first[-1], after[-1]])
-    low, low_after, high, high_after = (
-        ring.ravel() for ring in (first[:-1], after[:-1], first[1:], after[1:])
-    )
+
+    # between two rings a band
+    low, low_after = first[:-1].ravel(), after[:-1].ravel()
+    high, high_after = first[1:].ravel(), after[1:].ravel()
     bands = np.vstack(
         [np.column_stack([low, low_after, high_after]), np.column_stack([low, high_after, high])]
     )
+
+    # as wide as the volume asks
     solid = TriMesh(vertices, np.vstack([bottom, bands, top]))
     across = np.sqrt(volume / solid.volume)
     return TriMesh(solid.vertices * [across, across, 1.0], solid.faces)

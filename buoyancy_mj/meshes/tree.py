@@ -1,4 +1,4 @@
-"""`Tree`: the triangles of a mesh in boxes, so that only those at the waterline need to be looked at."""
+"""`Tree`: the triangles of a mesh in nested boxes, so that only the waterline's are looked at."""
 
 from typing import NamedTuple
 
@@ -10,32 +10,47 @@ from buoyancy_mj.kernels import tree as kernels
 LEAF = 32
 """Most triangles of a leaf."""
 FEW = 1000
-"""Size of mesh below which one leaf is as fast as a tree."""
+"""Number of triangles below which one leaf is as fast as a tree."""
 
 
 class Tree(NamedTuple):
-    """A tree over the triangles of a mesh, see `kernels.tree`."""
+    """A tree over the triangles of a mesh; see `kernels.tree`."""
 
     vertices: NDArray[np.float64]
-    """Of the leaves, one after the other (v, 3) [m]."""
+    """Vertices of the leaves, one leaf after the other (v, 3) [m]."""
     faces: NDArray[np.int64]
-    """Indices into them (m, 3), in the order of the tree."""
+    """Indices into the vertices (m, 3), in the order of the tree."""
     spans: NDArray[np.int64]
-    """First face of each node and one behind its last, the same for its vertices, and the node behind all below (n, 5)."""
+    """First face of each node and one past its last, the same for vertices, next node (n, 5).
+
+    The next node is the one behind all nodes below this one."""
     boxes: NDArray[np.float64]
-    """Middle and half sides of its bounding box (n, 6) [m]."""
+    """Middle and half sides of each node's bounding box (n, 6) [m]."""
     moments: NDArray[np.float64]
-    """Moments of its vector area (n, 31) [m^2, m^3, m^4]."""
+    """Moments of each node's vector area (n, 31) [m^2, m^3, m^4]."""
 
 
-def grow_tree(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
-    """A tree over the triangles of a mesh; of one leaf alone where the plain way is as fast."""
+def build_tree(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
+    """Build a tree over the triangles of a mesh; a small mesh becomes a single leaf.
+
+    Args:
+        vertices: corners (n, 3) [m].
+        faces: indices of the corners of each triangle (m, 3).
+    """
+    # sort the faces into nodes
     n = len(faces)
     leaf = LEAF if n >= FEW else n
-    order, spans = np.arange(n), np.empty((4 * n // leaf + 8, 5), np.int64)
+    order = np.arange(n)
+    spans = np.empty((4 * n // leaf + 8, 5), np.int64)
     spans = spans[: kernels.build(vertices[faces], leaf, order, spans)].copy()
-    boxes, moments = np.empty((len(spans), 6)), np.empty((len(spans), kernels.MOMENTS))
+
+    # measure the nodes
+    boxes = np.empty((len(spans), 6))
+    moments = np.empty((len(spans), kernels.MOMENTS))
     kernels.measure(vertices[faces[order]], spans, boxes, moments)
-    faces, picked = faces[order], np.empty(3 * n, np.int64)
-    count = kernels.spread(faces, spans, len(vertices), picked)
-    return Tree(vertices[picked[:count]], faces, spans, boxes, moments)
+
+    # give each leaf its own vertices
+    faces = faces[order]
+    used = np.empty(3 * n, np.int64)
+    count = kernels.spread(faces, spans, len(vertices), used)
+    return Tree(vertices[used[:count]], faces, spans, boxes, moments)

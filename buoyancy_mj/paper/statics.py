@@ -9,9 +9,10 @@ from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.study import Claim, Result, listed, percent, table_of, verdict
 from buoyancy_mj.submersion.convex_hull import ConvexHull
+from buoyancy_mj.submersion.cross_sections import cut_sections
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.methods import Method
-from buoyancy_mj.submersion.sections import Sections, sections
+from buoyancy_mj.submersion.sections import Sections
 
 HULL, CUT, SECTIONS = ConvexHull(), ConvexHull(cut=True, centroid="hull"), Sections()
 METHODS: dict[str, Method] = {
@@ -70,7 +71,7 @@ def areas(quick: bool) -> Result:
     """Areas of cross-sections against z, of the hourglass with its closed form and of the AUV."""
     step = 0.02 if quick else 0.002
     mesh = solids.hourglass()
-    s, rows, _ = sections(mesh.vertices, mesh.faces, step, np.inf)
+    s, rows, _ = cut_sections(mesh.vertices, mesh.faces, step, np.inf)
     truth = solids.hourglass_area(s + solids.HALF_HEIGHT, solids.SECTIONS)
     z = np.arange(
         min(m.bounds[0, 2] for m in solids.auv()),
@@ -286,7 +287,7 @@ def _parts() -> dict[str, list[TriMesh]]:
 
 def _areas_at(mesh: TriMesh, z: NDArray[np.float64], step: float) -> NDArray[np.float64]:
     """Areas of a mesh's sections at heights z, nothing above and below it."""
-    s, rows, _ = sections(mesh.vertices, mesh.faces, step, np.inf)
+    s, rows, _ = cut_sections(mesh.vertices, mesh.faces, step, np.inf)
     return np.interp(z, s, rows[:, 0], left=0.0, right=0.0)
 
 

@@ -135,7 +135,7 @@ class JonswapSea(_Sea):
         return rows
 
     @property
-    def doubt(self) -> str:
+    def warning(self) -> str:
         """What speaks against such a sea in nature, a clause; empty if nothing does.
 
         Its mean steepness 2 pi Hs / (g Tp^2) stays below 1/15 up to a Tp of 8 s, and below 1/25 from 15 s up,
@@ -193,9 +193,9 @@ class PiersonMoskowitzSea(_Sea):
         return self.as_jonswap.rows
 
     @property
-    def doubt(self) -> str:
-        """What speaks against such a sea in nature, see `JonswapSea.doubt`."""
-        return self.as_jonswap.doubt
+    def warning(self) -> str:
+        """What speaks against such a sea in nature, see `JonswapSea.warning`."""
+        return self.as_jonswap.warning
 
 
 def _shape(ratio: NDArray[np.float64], gamma: float) -> NDArray[np.float64]:

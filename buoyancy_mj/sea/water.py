@@ -77,9 +77,9 @@ class Water:
         return float(total)
 
     @functools.cached_property
-    def doubts(self) -> tuple[str, ...]:
+    def warnings(self) -> tuple[str, ...]:
         """What speaks against its waves in nature, clauses: they are steeper than those that break."""
-        return tuple(doubt for wave in self.waves if (doubt := getattr(wave, "doubt", "")))  # type: ignore[union-attr]
+        return tuple(warning for wave in self.waves if (warning := getattr(wave, "warning", "")))  # type: ignore[union-attr]
 
     def elevation(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
         """Height of the surface [m], world frame, at points x, y (any shape) [m] and a time [s]."""

@@ -33,7 +33,7 @@ class RegularWave:
 
     Give exactly one of `frequency`, `period`, `wavelength`; the others follow from the dispersion
     relation omega^2 = g k tanh(k h) (Newman 1977, 6.2). Real waves break where they are steeper than
-    `STEEPEST`, which this one does not; `doubt` tells.
+    `STEEPEST`, which this one does not; `warning` tells.
 
     Raises:
         WaterError: none or several of the three given, or a value out of its range.
@@ -100,7 +100,7 @@ class RegularWave:
         return np.array([[self.amplitude, kx, ky, omega, self.phase, self.depth]])
 
     @property
-    def doubt(self) -> str:
+    def warning(self) -> str:
         """What speaks against such a wave in nature, a clause; empty if nothing does."""
         most = STEEPEST * self.wavelength * math.tanh(2.0 * math.pi / self.wavelength * self.depth)
         if 2.0 * self.amplitude <= most:

@@ -14,7 +14,7 @@ from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choice
 from buoyancy_mj.hulls.hull import find_close_pairs
 from buoyancy_mj.hulls.selection import GEOMS, Selection, body_name
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.mesh import to_manifold
+from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.ballast_sites import LEAST, BallastSite, find_sites, solve_least_ballast
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, attitude, hydrostatics_of

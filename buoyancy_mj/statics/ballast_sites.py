@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import OptimizeResult, linprog
 
 from buoyancy_mj.errors import BallastError, ModelError, choices
-from buoyancy_mj.meshes.mesh import winding
+from buoyancy_mj.meshes.surface import winding_number
 from buoyancy_mj.statics.vessel import Afloat, Vessel
 
 LEAST = 1e-6
@@ -73,7 +73,7 @@ def _place(
         (float(fill), hull)
         for fill, hull, mesh in zip(vessel.fills, vessel.names, vessel.meshes, strict=True)
         if (np.abs(middle - mesh.bounds.mean(axis=0)) <= 0.5 * mesh.extents).all()
-        and winding(mesh.vertices, mesh.faces, middle) > 0.5
+        and winding_number(mesh.vertices, mesh.faces, middle) > 0.5
     ]
     taken, hull = max(inside, default=(0.0, ""))
     if kind == "foam" and taken == 1.0:

@@ -17,6 +17,7 @@ from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import PackedHulls
+from buoyancy_mj.submersion.hull_set import HullSet
 
 _FREE = int(mujoco.mjtJoint.mjJNT_FREE)
 PLAUSIBLE = 1e-4, 1e4
@@ -153,8 +154,7 @@ class Vessel:
     @functools.cached_property
     def _packed(self) -> PackedHulls:
         level = Water(density=self.water.density, level=self.water.level)
-        rows = np.arange(len(self.solids))
-        return PackedHulls(self.solids, rows, rows, level, fills=self.fills)
+        return PackedHulls(HullSet(self.solids, fills=self.fills), level)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

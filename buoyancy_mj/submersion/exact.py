@@ -6,13 +6,15 @@ from typing import Any, ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MethodError
 from buoyancy_mj.kernels import clip, local, pressure, waterplane
-from buoyancy_mj.meshes.mesh import TriMesh, refine
-from buoyancy_mj.meshes.tree import Tree, grow_tree
+from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.meshes.refinement import refine
+from buoyancy_mj.meshes.tree import Tree, build_tree
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.submersion.hull_set import HullSet
 
 MOST_TRIANGLES = 200_000
 """Size to which a mesh may be refined for the waves."""
@@ -44,17 +46,9 @@ class Exact:
                 f"tolerance is {self.tolerance!r}; it must be a part of the volume, above 0 and at most 1"
             )
 
-    def pack(
-        self,
-        meshes: Sequence[TriMesh],
-        frames: ArrayLike,
-        bodies: ArrayLike,
-        water: Water,
-        turns: ArrayLike | None = None,
-        fills: ArrayLike | None = None,
-    ) -> "PackedHulls":
-        """Hulls ready to be submerged, see `PackedHulls`."""
-        return PackedHulls(meshes, frames, bodies, water, self.tolerance, fills)
+    def pack(self, hulls: HullSet, water: Water) -> "PackedHulls":
+        """Prepare hulls: refine their meshes for the waves, build their trees."""
+        return PackedHulls(hulls, water, self.tolerance)
 
 
 class PackedHulls:
@@ -64,28 +58,17 @@ class PackedHulls:
     miss, see `Exact.tolerance`.
     """
 
-    def __init__(
-        self,
-        meshes: Sequence[TriMesh],
-        frames: ArrayLike,
-        bodies: ArrayLike,
-        water: Water,
-        tolerance: float = 2e-3,
-        fills: ArrayLike | None = None,
-    ) -> None:
-        """Pack `meshes`.
+    def __init__(self, hulls: HullSet, water: Water, tolerance: float = Exact.tolerance) -> None:
+        """Pack hulls.
 
         Args:
-            meshes: the hulls (h).
-            frames: which row of positions and rotations places each (h,).
-            bodies: hulls of one number (h,) move together; errors in waves are seen against their joint volume.
+            hulls: the hulls; errors in waves are compared with the joint volume of a body's hulls.
             water: the sea.
-            tolerance: see `Exact`.
-            fills: part of each mesh's volume that displaces water (h,); None for all of it.
+            tolerance: see `Exact.tolerance`.
         """
+        meshes, fills = hulls.meshes, hulls.fills
         self.water = water
-        self.frames = np.asarray(frames, np.int64)
-        fills = np.ones(len(meshes)) if fills is None else np.asarray(fills, float)
+        self.frames = hulls.frames
         self._waves, self._typical = water.rows, pressure.typical(water.rows)
         self._whole = np.array(
             [
@@ -104,8 +87,8 @@ class PackedHulls:
             ]
         )
         self.volumes = self._whole[:, 0].copy()
-        """What the whole meshes displace (h,) [m^3]."""
-        edges = _longest_edges(meshes, np.asarray(bodies), water, tolerance)
+        """Volume that each hull displaces when it is under water (h,) [m^3]."""
+        edges = _longest_edges(meshes, hulls.bodies, water, tolerance)
         trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
         starts = np.cumsum([0, *(len(tree.vertices) for tree in trees)])
         firsts = np.cumsum([0, *(len(tree.faces) for tree in trees)])
@@ -133,7 +116,7 @@ class PackedHulls:
         most = int(np.diff(self._spans[leaves, 2:4]).max())
         self._depths, self._swell = np.empty((5, most)), np.empty((len(self._waves), 7))
         self.results = np.zeros((len(meshes), clip.COLUMNS))
-        """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
+        """Last submersion (h, 6): volume, centroid, wetted area, waterplane area; see `methods.Packed`."""
 
     ARRAYS = (
         "vertices", "faces", "areas", "nodes", "spans", "boxes", "moments", "whole", "typical", "frames", "depths",
@@ -172,9 +155,10 @@ class PackedHulls:
         positions: NDArray[np.float64],
         rotations: NDArray[np.float64],
         time: float,
-        run: int = 0,
+        _run: int = 0,
+        /,
     ) -> NDArray[np.float64]:
-        """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
+        """Submerge all hulls at a time [s]; return `results`, see `methods.Packed`."""
         clip.submerge_hulls(
             self._vertices,
             self._faces,
@@ -258,7 +242,7 @@ def _tree(mesh: TriMesh, edge: float) -> Tree:
     """The tree of a mesh with edges no longer than `edge`; once for as long as the mesh lives."""
     trees = _TREES.setdefault(mesh, {})
     if edge not in trees:
-        trees[edge] = grow_tree(*refine(mesh.vertices, mesh.faces, edge))
+        trees[edge] = build_tree(*refine(mesh.vertices, mesh.faces, edge))
     return trees[edge]
 
 

@@ -1,30 +1,38 @@
-"""The ways to find what is under water, by name: the exact one, and the two of the source paper."""
+"""The methods that find the submerged part of hulls, by name, and the protocol that they follow.
 
-from collections.abc import Mapping, Sequence
+A fourth method is a frozen dataclass of its options with a `name` and a `pack`, as `Method` asks,
+in a module beside the others; `pack` returns an object as `Packed` asks. One more entry in
+`METHODS` makes it known to scenes, the plugin and the command line.
+"""
+
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MethodError, choices
-from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.convex_hull import ConvexHull
 from buoyancy_mj.submersion.exact import Exact
+from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.sections import Sections
 
 
 class Packed(Protocol):
-    """Hulls ready to be submerged together, again and again."""
+    """Hulls packed by a method, ready to be submerged again and again."""
 
     results: NDArray[np.float64]
-    """Last submersion (h, 6): volume, centroid (NaN when dry), wetted area, waterplane area (NaN if the method has none)."""
+    """Last submersion of each hull (h, 6); `kernels.clip` names the columns.
+
+    They are the volume [m^3], its centroid (3) [m] in the world frame (NaN when dry), the wetted
+    area and the waterplane area [m^2] (NaN from a method that knows no areas)."""
     volumes: NDArray[np.float64]
-    """What the whole meshes displace (h,) [m^3]."""
+    """Volume that each hull displaces when it is under water (h,) [m^3]."""
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """Work done so far, in the method's own units."""
+        """Work done so far, in the method's own units; empty from a method that does not count."""
         ...
 
     def submerge(
@@ -33,44 +41,35 @@ class Packed(Protocol):
         rotations: NDArray[np.float64],
         time: float,
         run: int = 0,
+        /,
     ) -> NDArray[np.float64]:
-        """Submersion of all hulls at a time [s], written to and returned as `results`.
+        """Submerge all hulls; return `results`, written anew.
+
+        A method written in Python, hull by hull, may leave the loop to `hull_set.submerge_each`.
 
         Args:
             positions: origins of the frames (n, 3) [m], world frame.
             rotations: world_from_frame of the frames, row-major (n, 9).
-            time: [s].
-            run: whose step this is; a method that carries something from step to step does so within a run.
+            time: of the water [s].
+            run: number of the simulation that takes this step. Several may share the hulls; what a
+                method carries from step to step it carries within a run.
         """
         ...
 
 
 class Method(Protocol):
-    """A way to find what is under water, and its options."""
+    """A way to find the submerged part of hulls, with its options."""
 
     @property
     def name(self) -> str:
-        """What it is called in scenes and on the command line."""
+        """Name in scenes, in the plugin and on the command line."""
         ...
 
-    def pack(
-        self,
-        meshes: Sequence[TriMesh],
-        frames: ArrayLike,
-        bodies: ArrayLike,
-        water: Water,
-        turns: ArrayLike | None = None,
-        fills: ArrayLike | None = None,
-    ) -> Packed:
-        """Hulls ready to be submerged.
+    def pack(self, hulls: HullSet, water: Water) -> Packed:
+        """Prepare hulls, so that each step repeats no work that the first could do.
 
-        Args:
-            meshes: the hulls (h).
-            frames: which row of positions and rotations places each (h,).
-            bodies: hulls of one number (h,) move together.
-            water: the sea.
-            turns: body_from_frame, how the frame of each hull is turned in its body (h, 3, 3); None for not at all.
-            fills: part of each mesh's volume that displaces water (h,); None for all of it.
+        Raises:
+            MethodError: an option does not fit these hulls.
         """
         ...
 
@@ -82,7 +81,7 @@ METHODS: Mapping[str, type[Exact] | type[ConvexHull] | type[Sections]] = {
 
 
 def parse_method(method: str | Method) -> Method:
-    """A method as it is, or the one of a name with its defaults.
+    """Return a method as it is, or the one of a name with its defaults.
 
     Raises:
         MethodError: there is no such method.
@@ -93,6 +92,7 @@ def parse_method(method: str | Method) -> Method:
         return METHODS[method]()
     if isinstance(method, type) or not hasattr(method, "pack"):
         raise MethodError(
-            f"{method!r} is no method; possible are {', '.join(METHODS)}, or one of them with options"
+            f"{method!r} is no method; possible are {', '.join(METHODS)}, "
+            "or one of them with options"
         )
     return method

@@ -13,6 +13,7 @@ from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
+from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.methods import Method, Packed, parse_method
 
 
@@ -68,7 +69,7 @@ def submerge(
             )
     else:
         # may carry something from step to step
-        row = chosen.pack([mesh], [0], [0], sea).submerge(
+        row = chosen.pack(HullSet([mesh]), sea).submerge(
             origin[None], turn.reshape(1, 9), float(time)
         )[0]
     volume, _, _, _, wetted_area, waterplane_area = row.tolist()
@@ -82,7 +83,7 @@ _LOCK = threading.Lock()  # a packed mesh has one set of results
 @functools.lru_cache(maxsize=16)
 def _packed(mesh: TriMesh, water: Water) -> Packed:
     """A mesh ready to be submerged again and again."""
-    return Exact().pack([mesh], [0], [0], water)
+    return Exact().pack(HullSet([mesh]), water)
 
 
 def wetted_surface(

@@ -9,7 +9,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.hulls import geoms
-from buoyancy_mj.meshes.mesh import refine
+from buoyancy_mj.meshes.refinement import refine
 
 SHOWN_GROUPS = 3
 """Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""

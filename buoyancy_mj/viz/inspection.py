@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.inspection import report
 from buoyancy_mj.inspection.inspection import Floating, Inspection
-from buoyancy_mj.meshes.mesh import TriMesh, refine, to_manifold
+from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.meshes.refinement import refine
+from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.statics.curves import waterlines
 from buoyancy_mj.statics.vessel import Vessel
 from buoyancy_mj.viz.rrd import RrdFile

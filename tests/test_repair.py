@@ -169,8 +169,8 @@ def test_a_diagnosis_counts_what_it_found():
         1,
     )
     assert [hole.edges for hole in found.holes] == [9]
-    assert 0.0 < found.doubt < 1e-3 * SPHERE.volume
-    assert found.holes[0].length == pytest.approx(9 * 0.0692, rel=0.1)
+    assert 0.0 < found.uncertain_volume < 1e-3 * SPHERE.volume
+    assert found.holes[0].perimeter == pytest.approx(9 * 0.0692, rel=0.1)
     assert found.pieces == 1
     assert found.refusal == ""
     assert found.extents == pytest.approx((2.0, 2.0, 2.0), rel=1e-3)
@@ -183,11 +183,11 @@ def test_a_diagnosis_of_what_is_refused_keeps_what_it_found():
     assert tub.refusal.endswith(
         "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)"
     )
-    assert [hole.length for hole in tub.holes] == pytest.approx([6.0])
+    assert [hole.perimeter for hole in tub.holes] == pytest.approx([6.0])
 
 
 def test_a_diagnosis_counts_pieces_and_inner_shells():
     inside = shapes.box((0.9, 0.4, 0.2))
     found = diagnose(*pair(inside, inward=True))
     assert (found.pieces, found.shells) == (2, 1)
-    assert found.sealed == pytest.approx(0.576)
+    assert found.sealed_volume == pytest.approx(0.576)
