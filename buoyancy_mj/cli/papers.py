@@ -25,9 +25,9 @@ def paper(
     ] = False,
 ) -> None:
     """Reproduce the source paper: its figures, and what holds of its claims."""
-    from buoyancy_mj.paper import report, studies  # need matplotlib, which 'run' does not
+    from buoyancy_mj.paper import contents, reproduction  # need matplotlib, which 'run' does not
 
-    total = len(set(only)) if only else len(studies.STUDIES)
+    total = len(set(only)) if only else len(contents.STUDIES)
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),
@@ -41,9 +41,9 @@ def paper(
             progress.update(task, description=study.title, completed=next(done))
 
         done = itertools.count()
-        rows = report.reproduce(out, only or (), quick=quick, begin=begin)
+        rows = reproduction.reproduce(out, only or (), quick=quick, begin=begin)
     table = Table(title="The source paper's claims", title_justify="left", show_lines=True)
-    for name in report.HEADER:
+    for name in reproduction.HEADER:
         table.add_column(name, overflow="fold")
     for row in rows:
         table.add_row(*row)

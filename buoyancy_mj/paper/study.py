@@ -1,4 +1,4 @@
-"""What a part of the reproduction is made of: tables, claims of the paper beside them, and a figure."""
+"""The parts of a study: its computation, its tables, the claims that it checks, its figure."""
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
@@ -11,69 +11,63 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Column = Sequence[str] | Sequence[float] | NDArray[np.float64]
-"""Values of one column of a table."""
+"""The values of one column of a table."""
 Table = Mapping[str, Column]
-"""Columns of one length by name, units in brackets."""
+"""Columns of one length by name, with units in brackets."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Claim:
-    """One claim of the paper, and what is found here."""
+    """One claim of the paper beside what is measured here."""
 
-    claim: str
-    """What is said."""
-    paper: str
+    statement: str
+    """The claim, in a few words."""
+    published: str
     """The paper's number."""
     measured: str
-    """The number found here, and on what."""
-    holds: str
-    """"yes", "no" or "in part"."""
+    """The number measured here, and on which bodies."""
+    verdict: str
+    """"yes", "no" or "in part", from `judge`."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Result:
-    """What a study found."""
+    """The outcome of a study."""
 
     tables: Mapping[str, Table]
-    """By name; each becomes NAME.csv."""
-    claims: tuple[Claim, ...]
-    """The claims that it checks."""
+    """The tables by name; each becomes NAME.csv."""
+    claims: tuple[Claim, ...] = ()
+    """The claims that the study checks."""
 
 
 @dataclasses.dataclass(frozen=True)
 class Study:
-    """A part of the reproduction that can be run by itself."""
+    """A part of the reproduction that can run by itself."""
 
     name: str
-    """One word: that of `--only`, and of the picture."""
+    """One word: the value of `--only`, and the name of the picture."""
     title: str
     """One line."""
-    run: Callable[[bool], Result]
-    """The computation; True for a coarse, quick one."""
+    measure: Callable[[bool], Result]
+    """The computation; it is coarse and quick if its argument is True."""
     draw: Callable[[Result], "Figure"] | None = None
-    """Its figure, if it has one."""
+    """The figure, if the study has one."""
     caption: str = ""
     """What the figure shows."""
 
 
-def verdict(whole: bool, part: bool = False) -> str:
-    """Whether a claim holds, in a word."""
-    return "yes" if whole else "in part" if part else "no"
+def judge(whole: bool, part: bool = False) -> str:
+    """Return the verdict on a claim: "yes", "in part" or "no".
+
+    Args:
+        whole: whether the claim holds for all bodies and methods that it names.
+        part: whether it holds for some of them.
+    """
+    if whole:
+        return "yes"
+    return "in part" if part else "no"
 
 
-def table_of(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> Table:
-    """A table by its rows."""
+def tabulate(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> Table:
+    """Turn rows into a table with columns of these names."""
     return {name: list(column) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
-
-
-def percent(value: float, *, sign: bool = False) -> str:
-    """A fraction as a percentage, with as many digits as it deserves."""
-    value = 0.0 if abs(value) < 1e-9 else value
-    size = abs(100.0 * value)
-    digits = ".0f" if size >= 10.0 else ".1f" if size >= 0.1 else ".1g"
-    return f"{100.0 * value:{'+' if sign else ''}{digits}} %"
-
-
-def listed(values: Mapping[str, str]) -> str:
-    """Values, each with what it is of behind it."""
-    return ", ".join(f"{value} ({name})" for name, value in values.items())

@@ -1,17 +1,18 @@
-"""The reproduction as a whole: run the studies, write tables and pictures, hold the claims against what was measured."""
+"""The reproduction as a whole: run the studies, and write their tables, figures and page."""
 
 import csv
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from buoyancy_mj.errors import BuoyancyError, choices
-from buoyancy_mj.paper.page import page
-from buoyancy_mj.paper.studies import STUDIES
+from buoyancy_mj.paper.contents import STUDIES
+from buoyancy_mj.paper.page import render_page
 from buoyancy_mj.paper.study import Result, Study, Table
 
 HEADER = ("claim", "the paper", "measured here", "holds?", "command")
-"""Of the table of claims."""
+"""Header of the table of claims."""
 DPI = 110
+"""Resolution of the figures [dots per inch]."""
 
 
 def reproduce(
@@ -19,14 +20,15 @@ def reproduce(
     only: Sequence[str] = (),
     *,
     quick: bool = False,
-    begin: Callable[[Study], None] = lambda study: None,
+    begin: Callable[[Study], None] = lambda _: None,
 ) -> list[tuple[str, ...]]:
-    """Run the studies; what each finds is written as soon as it is found.
+    """Run the studies, and write what each measures as soon as it is done.
 
     Args:
-        folder: where NAME.csv and NAME.png go; and, unless `only` some run, claims.csv and a README.md of all.
-        only: names of studies; none for all.
-        quick: coarse and short, to see that it runs.
+        folder: where NAME.csv and NAME.png go; and, unless `only` some studies run, claims.csv and
+            a README.md of all.
+        only: names of studies; empty for all.
+        quick: run coarsely and shortly, to see that everything works.
         begin: called with each study before it runs.
 
     Returns:
@@ -38,35 +40,39 @@ def reproduce(
     for name in only:
         if name not in STUDIES:
             raise BuoyancyError(f"there is no study '{name}'; {choices(name, STUDIES)}")
-    chosen = [study for name, study in STUDIES.items() if not only or name in only]
+
     rows: list[tuple[str, ...]] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for study in chosen:
+        for name, study in STUDIES.items():
+            if only and name not in only:
+                continue
             begin(study)
-            result = study.run(quick)
-            _write(folder, study, result)
-            command = f"buoyancy-mj paper --only {study.name}"
-            rows += [(c.claim, c.paper, c.measured, c.holds, command) for c in result.claims]
+            result = study.measure(quick)
+            _write_result(folder, study, result)
+            command = f"buoyancy-mj paper --only {name}"
+            rows += [
+                (claim.statement, claim.published, claim.measured, claim.verdict, command)
+                for claim in result.claims
+            ]
         if not only:
             _write_csv(folder / "claims.csv", HEADER, rows)
-            (folder / "README.md").write_text(page(HEADER, rows, quick=quick))
+            (folder / "README.md").write_text(render_page(HEADER, rows, quick=quick))
     except OSError as error:
         raise BuoyancyError(f"cannot write the reproduction to '{folder}': {error}") from error
     return rows
 
 
-def _write(folder: Path, study: Study, result: Result) -> None:
-    """The tables and the picture of a study."""
+def _write_result(folder: Path, study: Study, result: Result) -> None:
+    """Write the tables and the figure of a study."""
     for name, table in result.tables.items():
-        _write_csv(folder / f"{name}.csv", list(table), _rows(table))
+        _write_csv(folder / f"{name}.csv", list(table), _format_rows(table))
     if study.draw is not None:
-        study.draw(result).savefig(
-            folder / f"{study.name}.png", dpi=DPI, metadata={"Software": None}
-        )
+        picture = folder / f"{study.name}.png"
+        study.draw(result).savefig(picture, dpi=DPI, metadata={"Software": None})
 
 
-def _rows(table: Table) -> Iterable[tuple[str, ...]]:
+def _format_rows(table: Table) -> Iterable[tuple[str, ...]]:
     """Rows of a table as text, numbers with seven digits."""
     return zip(
         *([v if isinstance(v, str) else f"{v:.7g}" for v in column] for column in table.values()),
