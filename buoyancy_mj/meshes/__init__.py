@@ -1,5 +1,6 @@
-"""Closed triangle meshes.
+"""Closed triangle meshes, and their repair.
 
-Vertices and faces in; a `TriMesh` that bounds a volume, repaired where it can be, and its tree out.
-Imports: kernels, errors.
+In: vertices and faces, as a file or an engine has them.
+Out: a `TriMesh` that bounds a volume, repaired where that is safe, and its tree of moments.
+May import: kernels, errors.
 """
