@@ -1,4 +1,9 @@
-"""What can go wrong, as exceptions whose one sentence gives the value got, what was possible and the mend."""
+"""What can go wrong, said in one sentence with the value got, what was possible and the mend.
+
+In: nothing.
+Out: exceptions with one root, `BuoyancyError`, and `choices`, which suggests the nearest name.
+May import: nothing of this package.
+"""
 
 import difflib
 from collections.abc import Iterable

@@ -1,4 +1,9 @@
-"""The command line: flags to a scene or a model, then for each frame: record. No physics."""
+"""The command line: no physics, and no file format of its own.
+
+In: flags, and names of scenes and models.
+Out: tables, JSON, recordings and pages, an exit status, and errors as one sentence.
+May import: every other room.
+"""
 
 # each adds its commands, in this order of the help
 from buoyancy_mj.cli import runs as runs  # isort: split

@@ -1,5 +1,6 @@
-"""The water at work in MuJoCo.
+"""The water at work inside MuJoCo, as a callback and as a plugin.
 
-A model and a water in; generalized forces in `qfrc_passive`, as a callback or a plugin, out.
-Imports: settings, loads, submersion, hulls, sea, kernels, errors.
+In: a model, a water and its options; then the engine's arrays, pass by pass.
+Out: generalized forces in `qfrc_passive`, added mass in `M`, and `Loads` for whoever asks.
+May import: settings, loads, submersion, hulls, sea, kernels, errors.
 """

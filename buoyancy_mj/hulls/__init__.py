@@ -1,5 +1,6 @@
-"""Which geoms displace water and as what.
+"""The geoms of a model that displace water.
 
-An MjModel in; `Hull`s, meshes fixed to bodies, and what the model says of itself out.
-Imports: meshes, errors.
+In: an `MjModel`, and a selection of its geoms.
+Out: `Hull`s, which are meshes fixed to bodies, and what the model's `<custom>` says of them.
+May import: meshes, errors.
 """

@@ -1,5 +1,6 @@
-"""All that statics and meshes tell about one model.
+"""Everything that can be said of one model before it goes to sea.
 
-A model in; an `Inspection`, its report and charts out.
-Imports: statics, hulls, meshes, sea, errors.
+In: a model and its still water.
+Out: an `Inspection`: verdicts on geoms and meshes, statics, and their report and charts.
+May import: statics, hulls, meshes, sea, errors.
 """

@@ -1,4 +1,8 @@
-"""Arrays in, numbers out, compiled by Numba: no engine, no dataclass and no file is known here.
+"""Numbers from arrays, compiled: no engine, no dataclass and no file is known here.
+
+In: arrays, packed in rows whose columns have names.
+Out: the same, filled: moments, depths, pressures, wrenches, generalized forces.
+May import: nothing of this package.
 
 Numba keeps compiled kernels and compiles anew when the file of a kernel changes, but not when a
 kernel of another file changes that it has built in. So what is older than any source goes.

@@ -1,5 +1,6 @@
 """What the water does to a body beside buoyancy.
 
-Hulls in; drag, damping and added mass as arrays, and `Loads` out.
-Imports: hulls, meshes, kernels, errors.
+In: hulls, and coefficients from the model, from a dataset or from the user.
+Out: arrays of damping and added mass for the kernels, and the `Loads` of one instant.
+May import: hulls, meshes, kernels, errors.
 """

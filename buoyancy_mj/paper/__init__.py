@@ -1,8 +1,9 @@
-"""The source paper, reproduced: its methods run, its figures are drawn, its claims are checked.
+"""The source paper, reproduced.
 
-Scenes and models that ship in; tables, figures and a page (`docs/paper`) out.
-Imports: scenes, engine, loads, hulls, submersion, meshes, sea, kernels, errors.
+In: the claims of Mahbub and Shaharear (2025), and the models and scenes that ship.
+Out: its figures, tables, and each claim beside what was measured.
+May import: scenes, engine, loads, hulls, submersion, meshes, sea, kernels, errors.
 
-Mahbub and Shaharear (2025), Real-Time Buoyancy Estimation for AUV Simulations Using Convex
-Hull-Based Submerged Volume Calculation, arXiv 2509.03804.
+Mahbub and Shaharear (2025), Real-Time Buoyancy Estimation for AUV Simulations Using
+Convex Hull-Based Submerged Volume Calculation, arXiv 2509.03804.
 """

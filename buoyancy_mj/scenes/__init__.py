@@ -1,5 +1,6 @@
-"""Runs.
+"""Runs, from a file to a summary.
 
-A TOML file in; one simulated scene, its frames and its summary, or a table of many out.
-Imports: engine, settings, statics, loads, submersion, hulls, sea, errors.
+In: a scene as TOML, with changes laid over it.
+Out: frames and a summary of one run, or a table of many runs.
+May import: engine, settings, statics, loads, submersion, hulls, sea, errors.
 """

@@ -1,5 +1,6 @@
-"""The sea.
+"""The sea: waves, spectra, currents, and the water that they move in.
 
-Waves, spectra and currents in; elevation, velocity, acceleration and pressure at places and times out.
-Imports: kernels, errors.
+In: heights, periods, directions, spectra, currents by depth or by time.
+Out: elevation, velocity, acceleration and pressure at any point and time.
+May import: kernels, errors.
 """

@@ -1,5 +1,6 @@
-"""How a water is said in text.
+"""Options as text.
 
-TOML values, plugin keys and flags in; `Settings` out, and back.
-Imports: loads, submersion, sea, errors.
+In: tables of TOML, keys of the plugin, flags of the command line.
+Out: `Settings`, checked, and the same texts again.
+May import: loads, hulls, submersion, sea, errors.
 """

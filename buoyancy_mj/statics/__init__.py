@@ -1,5 +1,6 @@
 """What a naval architect asks of still water.
 
-A model in; centres, metacentres, rest poses, righting arms and ballast out.
-Imports: hulls, submersion, meshes, sea, kernels, errors.
+In: a model, the water's density and level, a pose.
+Out: centres, metacentric heights, rest poses, righting arms and ballast.
+May import: hulls, submersion, meshes, sea, kernels, errors.
 """

@@ -1,5 +1,6 @@
-"""What of a mesh is under water.
+"""The part of a mesh under water, by three methods.
 
-Meshes, poses and a sea in; volume, centroid, wetted and waterplane area out, by three methods.
-Imports: meshes, sea, kernels, errors.
+In: meshes, their poses and a sea.
+Out: submerged volume, its centroid, wetted area and waterplane area.
+May import: meshes, sea, kernels, errors.
 """

@@ -1,5 +1,9 @@
-"""What is published, beside what comes out here: experiments, benchmarks and closed forms, case by case.
+"""Published experiments, benchmarks and closed forms beside what comes out here.
 
-`case` says what a case is and how one runs a body; the other modules hold the cases, `report` runs
-them all and writes the page.
+In: published numbers with their sources, and the models that ship.
+Out: one row for each quantity, its verdict, and the page that holds them all.
+May import: scenes, engine, statics, loads, hulls, sea, errors.
+
+`case` defines a case and runs a body; `report` runs all cases and writes the page; the other
+modules hold the cases.
 """

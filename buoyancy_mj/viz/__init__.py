@@ -1,5 +1,6 @@
 """What people look at.
 
-Frames and inspections in; a Rerun recording, or a model in the viewer of MuJoCo out.
-Imports: scenes, inspection, statics, submersion, hulls, meshes, sea, errors.
+In: frames of a run, or an inspection.
+Out: a recording for the Rerun viewer, or MuJoCo's own viewer with the water in it.
+May import: scenes, inspection, statics, submersion, hulls, meshes, sea, errors.
 """
