@@ -22,7 +22,6 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 
 from buoyancy_mj.scenes.scene import Scene
-from buoyancy_mj.sea.currents import Current
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import Wave
 from buoyancy_mj.settings.settings import CURRENTS, KEYS, WAVES, Settings

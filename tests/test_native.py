@@ -11,9 +11,14 @@ from hypothesis import strategies as st
 from mujoco import batch
 
 from buoyancy_mj import Buoyancy, Damping, EngineError, ModelError, RegularWave, Silhouette, Water
-from buoyancy_mj.engine import layout, native
+from buoyancy_mj.engine import compiled as compiled_water
+from buoyancy_mj.engine import layout
 from buoyancy_mj.kernels import wrenches
-from buoyancy_mj.kernels.entries import passive as kernel
+from buoyancy_mj.kernels.arrays import gather
+from buoyancy_mj.kernels.entries import passive
+from buoyancy_mj.kernels.entries.closures import compile_kernel
+from buoyancy_mj.kernels.multibody import PATHS, Bodies, Joints
+from buoyancy_mj.kernels.passes import ALIVE
 
 SEA = Water(
     density=1025.0,
@@ -101,10 +106,8 @@ def test_a_wrench_becomes_the_generalized_force_that_the_engine_makes_of_it():
     wrench = np.random.default_rng(0).normal(size=(model.nbody, 6))
     ours, theirs = np.zeros((2, model.nv))
     bodies = np.arange(model.nbody)
-    wrenches.project(
-        wrench, bodies, data.xipos, data.subtree_com, model.body_rootid, model.body_parentid,
-        model.body_dofnum, model.body_dofadr, model.dof_parentid, data.cdof, ours,
-    )  # fmt: skip
+    structs = {"mjModel": model, "mjData": data}
+    wrenches.project(wrench, bodies, gather(Bodies, structs), gather(Joints, structs), ours)
     for body in bodies:
         mujoco.mj_applyFT(
             model, data, wrench[body, :3], wrench[body, 3:], data.xipos[body], body, theirs
@@ -278,7 +281,7 @@ def test_threads_step_side_by_side():
 
 
 def test_more_threads_than_there_is_room_for_take_turns(monkeypatch):
-    monkeypatch.setattr(native, "THREADS", 1)
+    monkeypatch.setattr(compiled_water, "THREADS", 1)
     test_threads_step_side_by_side()
 
 
@@ -313,13 +316,13 @@ def test_no_pose_and_no_time_makes_it_hang_or_read_elsewhere(numbers, time):
         flat = getattr(data, name).reshape(-1)
         flat[: len(numbers)] = numbers[: flat.size]
     data.time = time
-    record = buoyancy.native.record(model._address)
+    record = buoyancy.compiled.record(model._address)
     function = ctypes.CFUNCTYPE(ctypes.c_int64, *[ctypes.c_int64] * 4)(
-        native._compiled(kernel.act).address
+        compile_kernel(passive.act).address
     )
-    assert function(model._address, data._address, buoyancy.native.address, record.address) == 0
-    record.ids[kernel.Id.alive] = 0
-    assert not (record.results[:, 0] > buoyancy.packed.volumes * (1.0 + 1e-9)).any()
+    assert function(model._address, data._address, buoyancy.compiled.address, record.address) == 0
+    record.arrays.ids[ALIVE] = 0
+    assert not (record.arrays.wet[:, 0] > buoyancy.packed.volumes * (1.0 + 1e-9)).any()
 
 
 def _fuzzed(made=[]):  # noqa: B006
@@ -358,7 +361,7 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
         buoyancy = buoyancy or Buoyancy(
             model, SEA, damping=Damping(viscous=Silhouette(coefficient=100.0))
         )
-        buoyancy._acting.damping.linear[:] = 1.0
+        buoyancy._load_model.arrays.damping.linear[:] = 1.0
         with buoyancy.installed(native=True):
             for _ in range(50):
                 mujoco.mj_step(model, data)
@@ -371,13 +374,13 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
 
 
 def test_the_engine_keeps_its_numbers_where_they_are_looked_for():
-    layout.verify(kernel.OFFSETS)
-    assert native.require_known_layout() is None
+    layout.verify(PATHS)
+    assert compiled_water.require_known_layout() is None
 
 
 def test_an_engine_that_keeps_them_elsewhere_is_refused_and_served_in_python(monkeypatch):
     right = layout.offset
-    native.require_known_layout.cache_clear()
+    compiled_water.require_known_layout.cache_clear()
     monkeypatch.setattr(layout, "offset", lambda path: right(path) + 8 * (path == "mjData.cdof"))
     try:
         model, data = raft()
@@ -386,7 +389,7 @@ def test_an_engine_that_keeps_them_elsewhere_is_refused_and_served_in_python(mon
             EngineError,
             match=r"MuJoCo 4.* does not keep mjData.cdof at byte \d+, as it says itself",
         ):
-            native.require_known_layout()
+            compiled_water.require_known_layout()
         with buoyancy.installed():
             assert not hasattr(mujoco.get_mjcb_passive(), "argtypes")
             mujoco.mj_forward(model, data)
@@ -396,7 +399,7 @@ def test_an_engine_that_keeps_them_elsewhere_is_refused_and_served_in_python(mon
         ):
             pass
     finally:
-        native.require_known_layout.cache_clear()
+        compiled_water.require_known_layout.cache_clear()
 
 
 def test_fields_and_functions_that_the_engine_lacks_are_told():

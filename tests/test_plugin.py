@@ -490,7 +490,7 @@ def test_a_rollout_moves_as_single_simulations():
 @pytest.mark.slow
 def test_ten_thousand_data_leave_nothing_behind():
     model = with_water()
-    native = water_in(model).native
+    water = water_in(model).compiled
     data = [mujoco.MjData(model) for _ in range(50)]
     del data
     gc.collect()
@@ -500,7 +500,7 @@ def test_ten_thousand_data_leave_nothing_behind():
         mujoco.mj_forward(model, data)
         del data
     gc.collect()
-    assert len(native._records) < 64
+    assert len(water._records) < 64
     assert resident() - room < 4e6
 
 

@@ -71,11 +71,11 @@ def place(mesh, seed, height):
 @pytest.mark.parametrize("name", MESHES)
 def test_a_tree_holds_each_triangle_in_one_leaf_and_each_corner_in_its_boxes(name, monkeypatch):
     mesh = MESHES[name]
-    hulls = packed(mesh, Water(), monkeypatch, few=0)
-    (first, last, start, end, skip), faces = hulls._spans.T, hulls._faces
+    hulls = packed(mesh, Water(), monkeypatch, few=0).hulls
+    (first, last, start, end, skip), faces = hulls.spans.T, hulls.faces
     whole = [
         sorted(map(tuple, corners.reshape(-1, 9).tolist()))
-        for corners in (hulls._vertices[faces], mesh.vertices[mesh.faces])
+        for corners in (hulls.vertices[faces], mesh.vertices[mesh.faces])
     ]
     assert whole[0] == whole[1]
     leaves = np.flatnonzero(skip == np.arange(len(skip)) + 1)
@@ -85,13 +85,13 @@ def test_a_tree_holds_each_triangle_in_one_leaf_and_each_corner_in_its_boxes(nam
     np.testing.assert_array_equal(first[leaves[1:]], last[leaves[:-1]])
     # leaves share no vertices
     np.testing.assert_array_equal(start[leaves[1:]], end[leaves[:-1]])
-    assert (start[leaves[0]], end[leaves[-1]]) == (0, len(hulls._vertices))
+    assert (start[leaves[0]], end[leaves[-1]]) == (0, len(hulls.vertices))
     for node in range(len(first)):
         assert (
             np.unique(faces[first[node] : last[node]]) == np.arange(start[node], end[node])
         ).all()
-        corners = hulls._vertices[faces[first[node] : last[node]]].reshape(-1, 3)
-        off = np.abs(corners - hulls._boxes[node, :3]) - hulls._boxes[node, 3:6]
+        corners = hulls.vertices[faces[first[node] : last[node]]].reshape(-1, 3)
+        off = np.abs(corners - hulls.boxes[node, :3]) - hulls.boxes[node, 3:6]
         assert off.max() <= 1e-12
         # the children of a node are what lies before the one that comes behind it
         inside = np.arange(node + 1, skip[node])
@@ -102,23 +102,20 @@ def test_the_same_mesh_grows_the_same_tree(monkeypatch):
     # a ball is as wide along each axis
     for name in ("ball", "plate"):
         one, other = (packed(MESHES[name], Water(), monkeypatch, few=0) for _ in range(2))
-        for array in one.arrays:
-            if array not in ("depths", "swell"):
-                np.testing.assert_array_equal(one.arrays[array], other.arrays[array])
+        for array, another in zip(one.hulls, other.hulls, strict=True):
+            np.testing.assert_array_equal(array, another)
 
 
 def test_the_moments_are_the_integrals(monkeypatch):
-    hulls = packed(MESHES["torus"], Water(), monkeypatch, few=0)
+    hulls = packed(MESHES["torus"], Water(), monkeypatch, few=0).hulls
     # a rule of degree two: the middles of the edges
-    for node in (0, 1, len(hulls._spans) // 2, len(hulls._spans) - 1):
-        corners = (
-            hulls._vertices[hulls._faces[slice(*hulls._spans[node, :2])]] - hulls._boxes[node, :3]
-        )
+    for node in (0, 1, len(hulls.spans) // 2, len(hulls.spans) - 1):
+        corners = hulls.vertices[hulls.faces[slice(*hulls.spans[node, :2])]] - hulls.boxes[node, :3]
         middles = 0.5 * (corners + np.roll(corners, 1, axis=1))
         vectors = 0.5 * np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         weighed = np.repeat(vectors / 3.0, 3, axis=0)
         y = middles.reshape(-1, 3)
-        found = hulls._moments[node]
+        found = hulls.moments[node]
         assert found[:3] == pytest.approx(vectors.sum(axis=0), abs=1e-12)
         assert found[3:12].reshape(3, 3) == pytest.approx(y.T @ weighed, abs=1e-12)
         for row, (a, b) in zip(
@@ -142,7 +139,7 @@ def test_the_moments_are_the_integrals(monkeypatch):
 def test_the_tree_finds_what_the_plain_way_finds(name, water, pair):
     mesh = MESHES[name]
     plain, quick = pair(mesh, water)
-    assert len(quick._spans) > 1 == len(plain._spans)
+    assert len(quick.hulls.spans) > 1 == len(plain.hulls.spans)
     for seed in range(20):
         pose = place(mesh, seed, 0.1 * np.sin(seed))
         a, b = plain.submerge(*pose, 0.3)[0], quick.submerge(*pose, 0.3)[0]
@@ -257,14 +254,15 @@ def test_several_hulls_share_one_structure_and_do_not_mix():
 def test_triangles_are_visited_at_the_waterline_alone(monkeypatch):
     ball = trimesh_hull(trimesh.creation.icosphere(subdivisions=6))
     hulls = packed(ball, Water(), monkeypatch, few=0)
+    vertices = hulls.hulls.vertices
     hulls.submerge(*place(ball, 1, 0.2), 0.0)
     # leaves that the surface does not touch may hold nonsense
     pose = place(ball, 1, 0.2)
-    cut = np.abs(hulls._vertices @ pose[1][0, 6:] + pose[0][0, 2]) < 0.2
+    cut = np.abs(vertices @ pose[1][0, 6:] + pose[0][0, 2]) < 0.2
     found = hulls.submerge(*pose, 0.0).copy()
-    hulls._vertices[~cut] = np.nan
+    vertices[~cut] = np.nan
     np.testing.assert_array_equal(hulls.submerge(*pose, 0.0), found)
     assert cut.mean() < 0.25
-    hulls._vertices[:] = np.nan
+    vertices[:] = np.nan
     for height in (-1.1, 1.1):
         assert np.isfinite(hulls.submerge(*place(ball, 1, height), 0.0)[0, 0])

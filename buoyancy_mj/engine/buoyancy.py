@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine import callbacks, passes
-from buoyancy_mj.engine.load_model import LoadModel
-from buoyancy_mj.engine.native import Native, Record
+from buoyancy_mj.engine.compiled import CompiledWater
+from buoyancy_mj.engine.load_model import build_load_model
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels import clip, wrenches
-from buoyancy_mj.kernels.entries.passive import Pressure
+from buoyancy_mj.kernels.passes import Record
+from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
 from buoyancy_mj.loads.drag import resolve_damping
 from buoyancy_mj.loads.loads import Loads, Portion
@@ -88,15 +89,15 @@ class Buoyancy(ReadOnly):
         )
         """Added mass of those bodies that have one."""
         damping = self.settings.damping
-        self._acting = LoadModel(
+        self._load_model = build_load_model(
             self.water,
             self.packed,
             self._owners,
-            Pressure[self.settings.pressure.replace("-", "_")],
+            PressureModel[self.settings.pressure.replace("-", "_")],
             resolve_damping(damping, model, self.hulls, self.water.density) if damping else None,
             self.added_mass,
         )
-        self.causes = self._acting.causes
+        self.causes = self._load_model.causes
         """Names of the loads that act."""
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
@@ -150,30 +151,16 @@ class Buoyancy(ReadOnly):
         with self._lock:
             record = self._record
             self._evaluate(data, data._address, record)
-            passive, model = data.qfrc_passive, self.model
+            passive = data.qfrc_passive
             # finite differences call a control callback again without computing qfrc_passive anew
             if data._address == self._last_data and np.array_equal(passive, self._after):
                 passive[:] = self._before
             self._before[:] = passive
-            if self._acting.has_added_mass:
-                passes.add_inertia(self._acting, self.model, data, record)
-            wrenches.project(
-                record.total,
-                self.bodies,
-                data.xipos,
-                data.subtree_com,
-                model.body_rootid,
-                model.body_parentid,
-                model.body_dofnum,
-                model.body_dofadr,
-                model.dof_parentid,
-                data.cdof,
-                passive,
-            )
+            passes.apply(self._load_model, self.model, data, record)
             self._after[:] = passive
             self._last_data = data._address
-            if "native" in self.__dict__:
-                self.native.forget(data._address)
+            if "compiled" in self.__dict__:
+                self.compiled.forget(data._address)
 
     def evaluate(self, data: mujoco.MjData) -> Loads:
         """The loads at the poses and velocities that `data` holds, as mj_forward left them; writes nothing."""
@@ -189,7 +176,9 @@ class Buoyancy(ReadOnly):
             EngineError: none acted on these data so far, or many others were stepped since.
         """
         with self._lock:
-            record = self.native.last_record(data._address) if "native" in self.__dict__ else None
+            record = (
+                self.compiled.last_record(data._address) if "compiled" in self.__dict__ else None
+            )
             if record is None and self._last_data == data._address:
                 record = self._record
             # a pass lies no more than a step back; what is older was of other data in the same place
@@ -205,10 +194,10 @@ class Buoyancy(ReadOnly):
 
     def loads_of(self, record: Record, data: mujoco.MjData) -> Loads:
         """What a record holds, as copies; its `data` still hold the poses."""
-        wet, centres, rows = record.results.copy(), record.centres.copy(), record.total.copy()
+        wet, centres, rows = record.wet.copy(), record.centres.copy(), record.total.copy()
         xipos = data.xipos
         weight = self.water.density * self.gravity
-        if self._acting.has_wave_pressure:
+        if self._load_model.has_wave_pressure:
             force, about = weight * record.heads[:, :3], weight * record.heads[:, 3:]
             origins = data.geom_xpos[[hull.geom for hull in self.hulls]]
             torque = about + np.cross(origins - xipos[self._owners], force)
@@ -232,21 +221,21 @@ class Buoyancy(ReadOnly):
             total=total,
             wetted_area=wet[:, clip.WETTED_AREA],
             waterplane_area=wet[:, clip.WATERPLANE_AREA],
-            by_cause={cause: wrench.copy() for cause, wrench in record.causes.items()},
+            by_cause={cause: getattr(record.causes, cause).copy() for cause in self.causes},
         )
 
     def record(self) -> Record:
         """Room for what one evaluation leaves."""
-        return Record(len(self.hulls), self.model.nbody, self.causes, self.model.nC)
+        return self._load_model.record(self.model.nbody, self.model.nC)
 
     @functools.cached_property
-    def native(self) -> Native:
+    def compiled(self) -> CompiledWater:
         """What compiled code needs of this water.
 
         Raises:
             EngineError: this MuJoCo is not as expected inside.
         """
-        return Native(self.model, self._acting, self._lock)
+        return CompiledWater(self.model, self._load_model, self._lock)
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the floating bodies, world frame."""
@@ -254,9 +243,7 @@ class Buoyancy(ReadOnly):
         return masses @ data.xipos[self.floating] / masses.sum()
 
     def _evaluate(self, data: mujoco.MjData, run: int, record: Record) -> None:
-        passes.evaluate(
-            self._acting, self.model, data, self.water.density * self.gravity, run, record
-        )
+        passes.evaluate(self._load_model, self.model, data, self.gravity, run, record)
 
     @property
     def gravity(self) -> float:

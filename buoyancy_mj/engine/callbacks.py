@@ -8,7 +8,8 @@ from typing import Any, Protocol
 import mujoco
 
 from buoyancy_mj.engine import layout
-from buoyancy_mj.engine.native import Native, address_of
+from buoyancy_mj.engine.c_functions import address_of
+from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.errors import EngineError, ModelError
 from buoyancy_mj.kernels.entries.closures import Closure
 
@@ -25,7 +26,7 @@ class Lendable(Protocol):
     model: mujoco.MjModel
 
     @property
-    def native(self) -> Native:
+    def compiled(self) -> CompiledWater:
         """For compiled code."""
         ...
 
@@ -107,7 +108,9 @@ def _compiled(
             )
         if previous is not None and not hasattr(previous, "argtypes"):
             raise EngineError("a callback in Python is installed as mjcb_passive; remove it first")
-        return water.native.callback(0 if previous is None else address_of(previous), copies=copies)
+        return water.compiled.callback(
+            0 if previous is None else address_of(previous), copies=copies
+        )
     except EngineError as error:
         if native:
             raise EngineError(f"the water cannot act as compiled code: {error}") from error

@@ -1,4 +1,4 @@
-"""`Acting`: all that acts on the bodies of a model, resolved to arrays; what one pass of the water needs."""
+"""`LoadModel`: all that acts on the bodies of a model, resolved to arrays; what one pass of the water needs."""
 
 import dataclasses
 import functools
@@ -6,13 +6,18 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.kernels.entries.passive import Pressure
-from buoyancy_mj.loads.added_mass import AddedMass
-from buoyancy_mj.loads.drag import DampingArrays
+from buoyancy_mj.kernels import clip
+from buoyancy_mj.kernels.arrays import conform, empty
+from buoyancy_mj.kernels.damping import DampingArrays
+from buoyancy_mj.kernels.hulls import Hulls, Scratch
+from buoyancy_mj.kernels.inertia import AddedMass
+from buoyancy_mj.kernels.passes import IDS, Causes, Loads, Record
+from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays
 from buoyancy_mj.submersion.methods import Packed
 
-CAUSES = ("buoyancy", "wave_pressure", "drag", "radiation", "added_mass")
+CAUSES = Causes._fields
 """Names of all loads that there are."""
 
 
@@ -20,46 +25,79 @@ CAUSES = ("buoyancy", "wave_pressure", "drag", "radiation", "added_mass")
 class LoadModel:
     """What the water does to the bodies of one model."""
 
-    water: Water
-    """The sea."""
     packed: Packed
-    """Its hulls."""
-    owners: NDArray[np.int64]
-    """The body of each (h,)."""
-    pressure: Pressure
-    """What the pressure in waves is taken for."""
-    damping: DampingArrays | None
-    """Drag of the bodies; None for none."""
-    added: AddedMass
-    """Added mass of those that have one."""
+    """The hulls, ready to be submerged."""
+    arrays: Loads
+    """All that acts, as kernels read it."""
 
     @functools.cached_property
     def causes(self) -> tuple[str, ...]:
         """Names of the loads that act."""
-        acting = {
-            "wave_pressure": self.pressure != Pressure.archimedes,
-            "drag": self.damping is not None,
-            "radiation": self.damping is not None and self.damping.radiates,
-            "added_mass": self.has_added_mass,
+        damping = self.arrays.damping
+        acts = {
+            "wave_pressure": self.arrays.sea.pressure != PressureModel.archimedes,
+            "drag": len(damping.bodies) > 0,
+            "radiation": damping.radiates,
+            "added_mass": len(self.arrays.added_mass.bodies) > 0,
         }
-        return tuple(cause for cause in CAUSES if acting.get(cause, True))
-
-    @functools.cached_property
-    def has_added_mass(self) -> bool:
-        """Whether any body has added mass."""
-        return len(self.added.bodies) > 0
+        return tuple(cause for cause in CAUSES if acts.get(cause, True))
 
     @functools.cached_property
     def has_wave_pressure(self) -> bool:
-        """Whether the pressure is another than Archimedes': on still water it is not."""
-        return self.pressure != Pressure.archimedes and len(self.rows) > 0
-
-    @functools.cached_property
-    def rows(self) -> NDArray[np.float64]:
-        """The waves, see `kernels.waves`."""
-        return self.water.rows
+        """Whether the pressure differs from Archimedes': on still water it does not."""
+        return "wave_pressure" in self.causes and len(self.arrays.sea.waves) > 0
 
     @property
-    def current(self) -> NDArray[np.float64]:
-        """The current, see `kernels.currents`."""
-        return self.water.current_rows
+    def scratch(self) -> Scratch:
+        """Arrays to work in, for Python."""
+        return self.packed.scratch if isinstance(self.packed, PackedHulls) else empty(Scratch)
+
+    def record(self, bodies: int, inertias: int) -> Record:
+        """Room for what one pass leaves.
+
+        Args:
+            bodies: how many the model has.
+            inertias: elements of its mass matrix.
+        """
+        hulls = len(self.arrays.owners)
+        return Record(
+            wet=np.zeros((hulls, clip.COLUMNS)),
+            centres=np.zeros((bodies, 4)),
+            heads=np.zeros((hulls, 6)),
+            causes=Causes(
+                *(np.zeros((bodies if cause in self.causes else 0, 6)) for cause in CAUSES)
+            ),
+            total=np.zeros((bodies, 6)),
+            inertia=np.zeros(inertias if "added_mass" in self.causes else 0),
+            instant=np.zeros(1),
+            ids=np.zeros(IDS, np.int64),
+        )
+
+
+def build_load_model(
+    water: Water,
+    packed: Packed,
+    owners: NDArray[np.int64],
+    pressure: PressureModel,
+    damping: DampingArrays | None,
+    added_mass: AddedMass,
+) -> LoadModel:
+    """A `LoadModel`.
+
+    Args:
+        water: the sea.
+        packed: the hulls.
+        owners: the body of each hull (h,).
+        pressure: the model of the pressure in waves.
+        damping: drag of the bodies; None for none.
+        added_mass: added mass of the bodies that have one.
+    """
+    arrays = Loads(
+        hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
+        owners=owners,
+        bodies=np.unique(owners),
+        sea=sea_arrays(water, pressure),
+        damping=empty(DampingArrays) if damping is None else damping,
+        added_mass=added_mass,
+    )
+    return LoadModel(packed, conform(arrays))

@@ -21,13 +21,15 @@ from typing import Unpack
 import mujoco
 import numpy as np
 
-from buoyancy_mj.engine import layout, native
+from buoyancy_mj.engine import compiled, layout
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.engine.c_functions import address_of, wrap_python
 from buoyancy_mj.engine.callbacks import PLUGIN, plugin_instances, skips_passive
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, choices
-from buoyancy_mj.kernels.entries import passive as kernel
-from buoyancy_mj.kernels.entries import plugin_hooks as entries
+from buoyancy_mj.kernels.entries import plugin_hooks
 from buoyancy_mj.kernels.entries.closures import Closure
+from buoyancy_mj.kernels.entries.views import Table
+from buoyancy_mj.kernels.passes import ALIVE, MODEL, WATER
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.config import KEYS, parse_plugin_config, write_plugin_config
 from buoyancy_mj.settings.settings import Options, Settings, settings_with
@@ -146,14 +148,14 @@ def _resolve(model: int, data: int, instance: int) -> None:
     if getattr(_reading, "now", False):
         return
     with _lock:
-        water = _found(model, instance).native
+        water = _found(model, instance).compiled
         slot = layout.word(data + layout.offset("mjData.plugin_data")) + 8 * instance
         record = layout.word(slot)
-        if record and native.read_ids(record)[kernel.Id.water] == water.address:
-            native.read_ids(record)[kernel.Id.model] = model
+        if record and compiled.read_ids(record)[WATER] == water.address:
+            compiled.read_ids(record)[MODEL] = model
             return
         if record:
-            native.read_ids(record)[kernel.Id.alive] = 0
+            compiled.read_ids(record)[ALIVE] = 0
         _WORD.from_address(slot).value = water.record(model).address
 
 
@@ -161,7 +163,7 @@ def _found(model: int, instance: int) -> Buoyancy:
     """The water of an instance of the model at an address."""
     key = _key(model, instance)
     if key not in _waters:
-        unused = [old for old, water in _waters.items() if not water.native.used]
+        unused = [old for old, water in _waters.items() if not water.compiled.used]
         for old in unused[: max(0, len(unused) - KEPT)]:
             del _waters[old]
         _reading.now = True
@@ -271,25 +273,22 @@ class _Engine:
     """The plugin as the engine knows it, never freed: data may be deleted after the interpreter has gone."""
 
     def __init__(self) -> None:
-        native.require_known_layout()
+        compiled.require_known_layout()
         layout.verify(["mjData.plugin_data", *(f"mjModel.{name}" for name in _READ)])
-        self._resolve = native.wrap_python(_resolve)
-        context = [
-            layout.offset("mjData.plugin_data"),
-            native.address_of(self._resolve),
-            layout.symbol("mju_error"),
-        ]
-        self._context = np.array(context, np.uint64).astype(np.int64)
-        bound = self._context.ctypes.data
-        self._functions: dict[str, Closure] = {
-            "nstate": native.make_closure(entries.nstate, _INT, (_WORD, _INT)),
-            "init": native.make_closure(entries.init, _INT, (_WORD, _WORD, _INT), bound),
-            "destroy": native.make_closure(entries.destroy, None, (_WORD, _INT), bound),
-            "copy": native.make_closure(entries.copy, None, (_WORD, _WORD, _WORD, _INT), bound),
-            "reset": native.make_closure(entries.reset, None, (_WORD, _WORD, _WORD, _INT)),
-            "compute": native.make_closure(
-                entries.compute, None, (_WORD, _WORD, _INT, _INT), bound
-            ),
+        self._resolve = wrap_python(_resolve)
+        self._context = Table(
+            plugin_hooks.Context(
+                layout.offset("mjData.plugin_data"),
+                address_of(self._resolve),
+                layout.symbol("mju_error"),
+            )
+        )
+        bound = {"init", "destroy", "copy", "compute"}
+        self._functions = {
+            hook.__name__: Closure(
+                hook, *([self._context.address] if hook.__name__ in bound else [])
+            )
+            for hook in plugin_hooks.HOOKS
         }
         self._attributes = (ctypes.c_char_p * len(KEYS))(*(key.encode() for key in KEYS))
         self._plugin = _Plugin(

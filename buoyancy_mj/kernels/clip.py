@@ -419,28 +419,17 @@ def is_rotation(r):
 
 @njit(cache=True, error_model="numpy")
 def submerge_hulls(
-    vertices,  # (v, 3) of all hulls, in the frame of each; leaf by leaf, so that leaves share none
-    faces,  # (f, 3) into vertices, in the order of the leaves
-    areas,  # (f, 4) vector area of each face, times the part of its hull that displaces, and its length
-    nodes,  # (h + 1,) first node of each hull
-    spans,  # (n, 5) of the nodes: first face and last, first vertex and last, the node behind all below; see `tree`
-    boxes,  # (n, 6)
-    moments,  # (n, 31), likewise but for the last
-    whole,  # (h, 14) what each whole hull displaces, its centroid, its area, middle and half sides of its box, its part;
-    #         and its `local.plan`
-    frames,  # (h,) row of each hull in positions and rotations
-    positions,  # (n, 3) of the frames in the world
-    rotations,  # (n, 9) world_from_frame, row-major
-    level,
-    waves,  # (w, 6)
-    time,
-    scratch,  # (5, ) as long as the most vertices of a leaf
-    swell,  # (w, 7) scratch
+    hulls,  # `hulls.Hulls`
+    geoms,  # `multibody.Geoms`
+    sea,  # `sea.Sea`
+    time,  # [s]
+    scratch,  # `hulls.Scratch`
     out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
 ):
     """The submersion of each hull; only hulls that the surface may cut cost more than a few operations."""
+    waves, level, whole, frames = sea.waves, sea.level, hulls.whole, hulls.frames
     for h in range(frames.shape[0]):
-        origin, r = positions[frames[h]], rotations[frames[h]]
+        origin, r = geoms.geom_xpos[frames[h]], geoms.geom_xmat[frames[h]]
         # how deep the middle of its box lies, and how much shallower or deeper any point of it can be
         x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
         ex, ey, ez = whole[h, 8], whole[h, 9], whole[h, 10]
@@ -461,8 +450,8 @@ def submerge_hulls(
         if depth <= -reach:
             continue
         v, mx, my, mz, p, area = _walk(
-            vertices, faces, areas, spans, boxes, moments, nodes[h], nodes[h + 1], origin, r, level, waves, time,
-            whole[h], curvature, scratch, swell,
+            hulls.vertices, hulls.faces, hulls.areas, hulls.spans, hulls.boxes, hulls.moments, hulls.nodes[h],
+            hulls.nodes[h + 1], origin, r, level, waves, time, whole[h], curvature, scratch.depths, scratch.swell,
         )  # fmt: skip
         # never more than all of it, and below the rounding of the sums there is no centroid to speak of
         if v >= whole[h, 0]:

@@ -1,63 +1,54 @@
 """What slows bodies down in water, by coefficients: damping, and the waves that they make."""
 
 import math
-from typing import Any, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.waves import add_velocity
 
 
-class Moving(NamedTuple):
-    """The bodies that water slows down, how all bodies move, as MuJoCo has it, and the water around them."""
+class DampingArrays(NamedTuple):
+    """Damping of all bodies that have hulls, along the axes of each body: three forces, three torques."""
 
-    bodies: Any
-    """(n,) those with hulls."""
-    members: Any
-    """(m,) those and what is welded to each, one after the other."""
-    member_starts: Any
-    """(n + 1,)."""
-    body_mass: Any
-    """(nbody,)."""
-    body_inertia: Any
-    """(nbody, 3)."""
-    xpos: Any
-    """(nbody, 3)."""
-    xipos: Any
-    """(nbody, 3)."""
-    ximat: Any
-    """(nbody, 9)."""
-    xmat: Any
-    """(nbody, 9)."""
-    cvel: Any
-    """(nbody, 6) rotation, then translation at the root's centre of mass."""
-    subtree_com: Any
-    """(nbody, 3)."""
-    roots: Any
-    """(nbody,)."""
-    level: Any
-    """Of the water [m]."""
-    waves: Any
-    """(w, 6), see `waves`."""
-    current: Any
-    """(c, 5), see `currents`."""
-    time: Any
-    """[s]."""
-    timestep: Any
-    """[s]."""
+    bodies: Annotated[Words, ("n",)]
+    """Indices of the bodies in the model."""
+    volumes: Annotated[Doubles, ("n",)]
+    """Volume of the hulls of each [m^3]."""
+    linear: Annotated[Doubles, ("n", 6)]
+    """Force [N s/m] and torque [N m s] per velocity, when fully wet."""
+    quadratic: Annotated[Doubles, ("n", 6)]
+    """Force [N s^2/m^2] and torque [N m s^2] per velocity squared, when fully wet."""
+    coupled: Annotated[Words, ("n",)]
+    """1 where both are matrices instead, about the origin of the body."""
+    matrices: Annotated[Doubles, ("n", 72)]
+    """Those matrices, linear and quadratic, row by row."""
+    radiation: Annotated[Doubles, ("n", 4)]
+    """Force [N s/m] and torques [N m s] per velocity of heave, roll and pitch, and the waterplane [m^2] of them."""
+    panels: Annotated[Doubles, ("n", 5)]
+    """Drag by panels, in columns `panels.LEADING` to `panels.DENSITY`; no rows if no body has it."""
+    members: Annotated[Words, ("m",)]
+    """The bodies and all that is welded to each, one after the other."""
+    member_starts: Annotated[Words, ("n + 1",)]
+    """Where those of each body begin, and the end of all."""
+
+    @property
+    def radiates(self) -> bool:
+        """Whether any body loses the energy of the waves that it makes."""
+        return bool(self.radiation.any())
 
 
 @njit(cache=True, error_model="numpy")
 def add_drag(
-    moving,  # `Moving`
+    damping,  # `DampingArrays`
+    bodies,  # `multibody.Bodies`
+    sea,  # `sea.Sea`
+    time,  # [s]
+    timestep,  # [s]
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
-    volumes,  # (n,) whole volumes
-    linear,  # (n, 6) force and torque per velocity along the body's axes
-    quadratic,  # (n, 6) the same per velocity squared
-    coupled,  # (n,) 1 where instead both are matrices, about the body's origin
-    matrices,  # (n, 72) those, row by row: linear, quadratic
     out,  # (nbody, 6)
 ):
     """Add linear and quadratic damping along each body's axes, scaled with the wet fraction of its volume.
@@ -68,54 +59,55 @@ def add_drag(
     there divided by the timestep; and of matrices, scaled by those masses, the norm.
     """
     water, v, m = np.empty(3), np.empty(6), np.empty(6)
-    rate = 1.0 / moving.timestep if moving.timestep > 0.0 else math.inf
-    for n in range(moving.bodies.shape[0]):
-        b = moving.bodies[n]
+    rate = 1.0 / timestep if timestep > 0.0 else math.inf
+    for n in range(damping.bodies.shape[0]):
+        b = damping.bodies[n]
         volume = centres[b, 0]
         if not volume > 0.0:
             continue
-        wet = min(volume / volumes[n], 1.0)
-        r = moving.xmat[b]
-        whole = coupled[n] != 0
-        at = moving.xpos[b] if whole else centres[b, 1:]
-        set_current(moving.current, moving.level - centres[b, 3], moving.time, water)
+        wet = min(volume / damping.volumes[n], 1.0)
+        r = bodies.xmat[b]
+        whole = damping.coupled[n] != 0
+        at = bodies.xpos[b] if whole else centres[b, 1:]
+        set_current(sea.current, sea.level - centres[b, 3], time, water)
         add_velocity(
-            moving.waves,
-            centres[b, 1],
-            centres[b, 2],
-            centres[b, 3] - moving.level,
-            moving.time,
-            water,
+            sea.waves, centres[b, 1], centres[b, 2], centres[b, 3] - sea.level, time, water
         )
-        relative_velocity(moving, b, at, water, v)
-        mass, inertias = rigid_body(moving, n)
-        m[:3] = _apparent(mass, inertias, at, moving.xipos[b])
+        relative_velocity(bodies, b, at, water, v)
+        mass, inertias = rigid_body(damping, bodies, n)
+        m[:3] = _apparent(mass, inertias, at, bodies.xipos[b])
         m[3], m[4], m[5] = inertias
         if whole:
             norm = 0.0
             for i in range(6):
                 for j in range(6):
-                    d = wet * (matrices[n, 6 * i + j] + matrices[n, 36 + 6 * i + j] * abs(v[j]))
+                    d = wet * (
+                        damping.matrices[n, 6 * i + j]
+                        + damping.matrices[n, 36 + 6 * i + j] * abs(v[j])
+                    )
                     if d != 0.0:
                         norm += d * d / (m[i] * m[j])
             norm = math.sqrt(norm)
             held = wet * (rate / norm if norm > rate else 1.0)
-            f = _product(matrices[n], v, held)
+            f = _product(damping.matrices[n], v, held)
         else:
             for i in range(6):
-                d = wet * (linear[n, i] + quadratic[n, i] * abs(v[i]))
+                d = wet * (damping.linear[n, i] + damping.quadratic[n, i] * abs(v[i]))
                 m[i] = -min(d, m[i] * rate) * v[i]
             f = m[0], m[1], m[2], m[3], m[4], m[5]
-        _add(r, at, moving.xipos[b], f, out[b])
+        _add(r, at, bodies.xipos[b], f, out[b])
 
 
 @njit(cache=True, error_model="numpy")
 def add_radiation(
-    moving,
+    damping,
+    owners,  # (h,) body of each hull
+    bodies,
+    sea,
+    time,
+    timestep,
     wet,  # (h, 6) submersion of the hulls
-    owners,  # (h,) their bodies
     centres,
-    radiation,  # (n, 4) force per velocity upward, torque per rate of roll and pitch; the waterplane they are of
     out,
 ):
     """Add what the waves that a body makes take from its heave, roll and pitch, scaled with its waterplane.
@@ -123,37 +115,40 @@ def add_radiation(
     At the centroid of what is wet, on the velocity there relative to the waves, held as for `add_drag`.
     """
     water, v = np.empty(3), np.empty(6)
-    rate = 1.0 / moving.timestep if moving.timestep > 0.0 else math.inf
-    for n in range(moving.bodies.shape[0]):
-        b = moving.bodies[n]
-        if not centres[b, 0] > 0.0 or not radiation[n, 3] > 0.0:
+    rate = 1.0 / timestep if timestep > 0.0 else math.inf
+    for n in range(damping.bodies.shape[0]):
+        b = damping.bodies[n]
+        if not centres[b, 0] > 0.0 or not damping.radiation[n, 3] > 0.0:
             continue
         area = 0.0
         for h in range(owners.shape[0]):
             if owners[h] == b:
                 area += wet[h, 5]
-        share = min(max(area / radiation[n, 3], 0.0), 1.0)
+        share = min(max(area / damping.radiation[n, 3], 0.0), 1.0)
         if share == 0.0:
             continue
-        r, at = moving.xmat[b], centres[b, 1:]
+        r, at = bodies.xmat[b], centres[b, 1:]
         water[:] = 0.0
-        add_velocity(moving.waves, at[0], at[1], at[2] - moving.level, moving.time, water)
-        relative_velocity(moving, b, at, water, v)
-        mass, inertias = rigid_body(moving, n)
+        add_velocity(sea.waves, at[0], at[1], at[2] - sea.level, time, water)
+        relative_velocity(bodies, b, at, water, v)
+        mass, inertias = rigid_body(damping, bodies, n)
         heave = r[6] * v[0] + r[7] * v[1] + r[8] * v[2]
         up = (
-            -min(share * radiation[n, 0], _apparent(mass, inertias, at, moving.xipos[b]) * rate)
+            -min(
+                share * damping.radiation[n, 0],
+                _apparent(mass, inertias, at, bodies.xipos[b]) * rate,
+            )
             * heave
         )
-        roll = -min(share * radiation[n, 1], inertias[0] * rate) * v[3]
-        pitch = -min(share * radiation[n, 2], inertias[1] * rate) * v[4]
-        _add(r, at, moving.xipos[b], (up * r[6], up * r[7], up * r[8], roll, pitch, 0.0), out[b])
+        roll = -min(share * damping.radiation[n, 1], inertias[0] * rate) * v[3]
+        pitch = -min(share * damping.radiation[n, 2], inertias[1] * rate) * v[4]
+        _add(r, at, bodies.xipos[b], (up * r[6], up * r[7], up * r[8], roll, pitch, 0.0), out[b])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def relative_velocity(moving, b, at, water, out):
+def relative_velocity(bodies, b, at, water, out):
     """Velocity of a body at a place, relative to the water, and its rates, along its axes; written to `out` (6,)."""
-    r, cvel, com = moving.xmat[b], moving.cvel[b], moving.subtree_com[moving.roots[b]]
+    r, cvel, com = bodies.xmat[b], bodies.cvel[b], bodies.subtree_com[bodies.body_rootid[b]]
     x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
     ux = cvel[3] + cvel[1] * z - cvel[2] * y - water[0]
     uy = cvel[4] + cvel[2] * x - cvel[0] * z - water[1]
@@ -204,24 +199,24 @@ def _add(r, at, com, f, out):
 
 
 @njit(cache=True, error_model="numpy")
-def rigid_body(moving, n):
+def rigid_body(damping, bodies, n):
     """Mass of a body and what is welded to it, and what they oppose to a torque about each of its axes.
 
     The latter is torque over angular acceleration: one over the diagonal of the inverse inertia.
     """
-    r, xipos = moving.xmat[moving.bodies[n]], moving.xipos
-    members = moving.members[moving.member_starts[n] : moving.member_starts[n + 1]]
+    r, xipos = bodies.xmat[damping.bodies[n]], bodies.xipos
+    members = damping.members[damping.member_starts[n] : damping.member_starts[n + 1]]
     mass = x = y = z = 0.0
     for b in members:
-        m = moving.body_mass[b]
+        m = bodies.body_mass[b]
         mass, x, y, z = mass + m, x + m * xipos[b, 0], y + m * xipos[b, 1], z + m * xipos[b, 2]
     if not mass > 0.0:
         return 0.0, (0.0, 0.0, 0.0)
     x, y, z = x / mass, y / mass, z / mass
     xx = yy = zz = xy = xz = yz = 0.0
     for b in members:
-        m, q = moving.body_mass[b], moving.ximat[b]
-        i0, i1, i2 = moving.body_inertia[b, 0], moving.body_inertia[b, 1], moving.body_inertia[b, 2]
+        m, q = bodies.body_mass[b], bodies.ximat[b]
+        i0, i1, i2 = bodies.body_inertia[b, 0], bodies.body_inertia[b, 1], bodies.body_inertia[b, 2]
         ax, ay, az = xipos[b, 0] - x, xipos[b, 1] - y, xipos[b, 2] - z
         xx += q[0] * q[0] * i0 + q[1] * q[1] * i1 + q[2] * q[2] * i2 + m * (ay * ay + az * az)
         yy += q[3] * q[3] * i0 + q[4] * q[4] * i1 + q[5] * q[5] * i2 + m * (ax * ax + az * az)

@@ -5,11 +5,26 @@ dv the rate of those components, u the water's there (Fossen 2021, sec. 6.3 and 
 goes with the engine's accelerations stands in its mass matrix, so that it cannot be unstable.
 """
 
+from typing import Annotated, NamedTuple
+
 import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.currents import set_current, set_rate
+from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+
+
+class AddedMass(NamedTuple):
+    """Added mass of those bodies that have one, when fully wet."""
+
+    bodies: Annotated[Words, ("n",)]
+    """Indices of the bodies in the model."""
+    volumes: Annotated[Doubles, ("n",)]
+    """Volume of the hulls of each [m^3]."""
+    matrices: Annotated[Doubles, ("n", 36)]
+    """Row by row [kg, kg m, kg m^2]: surge, sway, heave, roll, pitch, yaw along the axes of each body, about its origin."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -35,54 +50,41 @@ def _share(centres, b, volume):
 
 @njit(cache=True, error_model="numpy")
 def add_inertia(
+    added_mass,  # `AddedMass`
+    bodies,  # `multibody.Bodies`
+    joints,  # `multibody.Joints`
+    mass_matrix,  # `multibody.MassMatrix`, written
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
-    bodies,  # (n,) bodies that have added mass
-    volumes,  # (n,) their whole volumes
-    matrices,  # (n, 36) in the axes of each body, about its origin: translation, rotation
-    xpos,  # (nbody, 3)
-    xmat,  # (nbody, 9)
-    subtree_com,  # (nbody, 3)
-    roots,  # (nbody,)
-    parents,  # (nbody,)
-    dofnum,  # (nbody,)
-    dofadr,  # (nbody,)
-    dof_parents,  # (nv,)
-    cdof,  # (nv, 6)
-    rownnz,  # (nv,) of the mass matrix, lower triangle by rows
-    rowadr,  # (nv,)
-    colind,  # (nC,)
-    mass,  # (nC,)
 ):
     """Add J^T A J of each body, scaled with the wet part of its volume; gives whether any was."""
     p, g = np.empty((6, 6)), np.empty((6, 6))
     u = np.empty(6)
-    added = False
-    for n in range(bodies.shape[0]):
-        b = bodies[n]
-        wet = _share(centres, b, volumes[n])
+    changed = False
+    for n in range(added_mass.bodies.shape[0]):
+        b = added_mass.bodies[n]
+        wet = _share(centres, b, added_mass.volumes[n])
         if not wet > 0.0:
             continue
-        added = True
-        _to_body(xmat[b], xpos[b] - subtree_com[roots[b]], p)
+        changed = True
+        _to_body(bodies.xmat[b], bodies.xpos[b] - bodies.subtree_com[bodies.body_rootid[b]], p)
         for i in range(6):
             for j in range(6):
                 total = 0.0
                 for k in range(6):
                     for m in range(6):
-                        total += p[k, i] * matrices[n, 6 * k + m] * p[m, j]
+                        total += p[k, i] * added_mass.matrices[n, 6 * k + m] * p[m, j]
                 g[i, j] = wet * total
-        while b > 0 and dofnum[b] == 0:
-            b = parents[b]
-        i = dofadr[b] + dofnum[b] - 1 if b > 0 else -1
+        i = last_dof(joints, b)
         while i >= 0:
             for k in range(6):
                 u[k] = 0.0
                 for m in range(6):
-                    u[k] += g[k, m] * cdof[i, m]
+                    u[k] += g[k, m] * joints.cdof[i, m]
+            first = mass_matrix.M_rowadr[i]
             # the columns of a row are the dof itself, last, and those above it
-            for e in range(rowadr[i], rowadr[i] + rownnz[i]):
-                c = cdof[colind[e]]
-                mass[e] += (
+            for e in range(first, first + mass_matrix.M_rownnz[i]):
+                c = joints.cdof[mass_matrix.M_colind[e]]
+                mass_matrix.M[e] += (
                     c[0] * u[0]
                     + c[1] * u[1]
                     + c[2] * u[2]
@@ -90,63 +92,50 @@ def add_inertia(
                     + c[4] * u[4]
                     + c[5] * u[5]
                 )
-            i = dof_parents[i]
-    return added
+            i = joints.dof_parentid[i]
+    return changed
 
 
 @njit(cache=True, error_model="numpy")
 def add_reaction(
-    centres,  # likewise
+    added_mass,
     bodies,
-    volumes,
-    matrices,
-    xipos,
-    xpos,
-    xmat,
-    cvel,  # (nbody, 6) MuJoCo's: rotation, then translation at the root's centre of mass
-    subtree_com,
-    roots,
-    parents,
-    dofnum,
-    dofadr,
-    dof_parents,
-    cdof_dot,  # (nv, 6)
-    qvel,  # (nv,)
-    level,
-    waves,
-    current,  # (n, 5)
-    time,
+    joints,
+    sea,  # `sea.Sea`
+    time,  # [s]
+    centres,
     out,  # (nbody, 6)
 ):
     """Add the rest of the reaction, about `xipos`: all but -A times what the accelerations of the joints bring."""
     p = np.empty((6, 6))
     water, rush = np.empty(3), np.empty(3)
     spin, rate, v, f = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
-    for n in range(bodies.shape[0]):
-        b = bodies[n]
-        wet = _share(centres, b, volumes[n])
+    for n in range(added_mass.bodies.shape[0]):
+        b = added_mass.bodies[n]
+        wet = _share(centres, b, added_mass.volumes[n])
         if not wet > 0.0:
             continue
-        r = xmat[b]
-        _to_body(r, xpos[b] - subtree_com[roots[b]], p)
+        r = bodies.xmat[b]
+        _to_body(r, bodies.xpos[b] - bodies.subtree_com[bodies.body_rootid[b]], p)
         # what the velocities of the joints bring to the acceleration
         spin[:] = 0.0
-        a = b
-        while a > 0 and dofnum[a] == 0:
-            a = parents[a]
-        i = dofadr[a] + dofnum[a] - 1 if a > 0 else -1
+        i = last_dof(joints, b)
         while i >= 0:
             for k in range(6):
-                spin[k] += cdof_dot[i, k] * qvel[i]
-            i = dof_parents[i]
-        set_current(current, level - centres[b, 3], time, water)
-        set_rate(current, time, rush)
-        add_velocity(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, water)
-        add_acceleration(waves, centres[b, 1], centres[b, 2], centres[b, 3] - level, time, rush)
+                spin[k] += joints.cdof_dot[i, k] * joints.qvel[i]
+            i = joints.dof_parentid[i]
+        set_current(sea.current, sea.level - centres[b, 3], time, water)
+        set_rate(sea.current, time, rush)
+        add_velocity(
+            sea.waves, centres[b, 1], centres[b, 2], centres[b, 3] - sea.level, time, water
+        )
+        add_acceleration(
+            sea.waves, centres[b, 1], centres[b, 2], centres[b, 3] - sea.level, time, rush
+        )
         for i in range(6):
             v[i] = rate[i] = 0.0
             for k in range(6):
-                v[i] += p[i, k] * cvel[b, k]
+                v[i] += p[i, k] * bodies.cvel[b, k]
                 rate[i] += p[i, k] * spin[k]
         u0, u1, u2 = _along(r, water)
         a0, a1, a2 = _along(r, rush)
@@ -157,8 +146,8 @@ def add_reaction(
         rate[2] -= a2 - (w0 * u1 - w1 * u0)
         v[0], v[1], v[2] = v[0] - u0, v[1] - u1, v[2] - u2
         for i in range(6):
-            f[i] = _product(matrices[n], i, rate)
-            spin[i] = _product(matrices[n], i, v)
+            f[i] = _product(added_mass.matrices[n], i, rate)
+            spin[i] = _product(added_mass.matrices[n], i, v)
         # C(v) v = (w x p, v x p + w x h) with momentum p, h
         f[0] += w1 * spin[2] - w2 * spin[1]
         f[1] += w2 * spin[0] - w0 * spin[2]
@@ -169,7 +158,8 @@ def add_reaction(
         fx = -wet * (r[0] * f[0] + r[1] * f[1] + r[2] * f[2])
         fy = -wet * (r[3] * f[0] + r[4] * f[1] + r[5] * f[2])
         fz = -wet * (r[6] * f[0] + r[7] * f[1] + r[8] * f[2])
-        x, y, z = xpos[b, 0] - xipos[b, 0], xpos[b, 1] - xipos[b, 1], xpos[b, 2] - xipos[b, 2]
+        at, com = bodies.xpos[b], bodies.xipos[b]
+        x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
         out[b, 0] += fx
         out[b, 1] += fy
         out[b, 2] += fz

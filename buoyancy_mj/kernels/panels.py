@@ -8,27 +8,27 @@ from numba import njit
 from buoyancy_mj.kernels.clip import placed
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.damping import relative_velocity, rigid_body
+from buoyancy_mj.kernels.hulls import BOX
 from buoyancy_mj.kernels.waves import add_velocity, tangent
 
+LEADING, TRAILING, LENGTH, VISCOSITY, DENSITY = range(5)
+"""Columns of `DampingArrays.panels`: drag coefficients of faces that lead and that trail, length of the body [m], kinematic
+viscosity [m^2/s], and density [kg/m^3], 0 for a body without panels."""
 LEAST_REYNOLDS = 1e4
 """Below it the line of the ITTC is taken no further: flow there is not turbulent."""
 
 
 @njit(cache=True, error_model="numpy")
 def add_panels(
-    moving,  # `damping.Moving`
-    vertices,  # as for `clip.submerge_hulls`
-    faces,
-    areas,
-    nodes,
-    spans,
-    whole,
-    frames,
-    positions,
-    rotations,
+    damping,  # `damping.DampingArrays`
+    hulls,  # `hulls.Hulls`
+    owners,  # (h,) body of each hull
+    bodies,  # `multibody.Bodies`
+    geoms,  # `multibody.Geoms`
+    sea,  # `sea.Sea`
+    time,  # [s]
+    timestep,  # [s]
     wet,  # (h, 6) submersion of the hulls
-    owners,  # (h,) their bodies
-    panels,  # (n, 5) coefficients of faces that lead and that trail, length [m], viscosity [m^2/s], density; 0 for none
     out,  # (nbody, 6)
 ):
     """Add the drag of each wet triangle: pressure by how squarely it meets the flow, and skin friction along it.
@@ -39,33 +39,36 @@ def add_panels(
     the middle of the hull. All is held so that its power stops no more than the motion there is.
     """
     water, v, f = np.empty(3), np.empty(6), np.empty(6)
-    rate = 1.0 / moving.timestep if moving.timestep > 0.0 else math.inf
-    level, waves, time = moving.level, moving.waves, moving.time
-    for n in range(moving.bodies.shape[0]):
-        density = panels[n, 4]
+    rate = 1.0 / timestep if timestep > 0.0 else math.inf
+    level, waves, panels = sea.level, sea.waves, damping.panels
+    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
+    for n in range(damping.bodies.shape[0]):
+        density = panels[n, DENSITY]
         if not density > 0.0:
             continue
-        b = moving.bodies[n]
-        r, at, spin = moving.xmat[b], moving.xipos[b], moving.cvel[b]
+        b = damping.bodies[n]
+        r, at, spin = bodies.xmat[b], bodies.xipos[b], bodies.cvel[b]
         f[:] = 0.0
         water[:] = 0.0
-        relative_velocity(moving, b, at, water, v)
+        relative_velocity(bodies, b, at, water, v)
         vx, vy, vz = placed((0.0, 0.0, 0.0), r, v[0], v[1], v[2])
         fastest = -1.0
         for h in range(owners.shape[0]):
             if owners[h] != b or not wet[h, 0] > 0.0:
                 continue
-            origin, turn = positions[frames[h]], rotations[frames[h]]
-            x, y, _ = placed(origin, turn, whole[h, 5], whole[h, 6], whole[h, 7])
+            origin, turn = geoms.geom_xpos[hulls.frames[h]], geoms.geom_xmat[hulls.frames[h]]
+            x, y, _ = placed(
+                origin, turn, hulls.whole[h, BOX], hulls.whole[h, BOX + 1], hulls.whole[h, BOX + 2]
+            )
             eta, gx, gy = tangent(waves, x, y, time)
-            set_current(moving.current, level - wet[h, 3], time, water)
+            set_current(sea.current, level - wet[h, 3], time, water)
             add_velocity(waves, wet[h, 1], wet[h, 2], wet[h, 3] - level, time, water)
             speed = math.sqrt((vx - water[0]) ** 2 + (vy - water[1]) ** 2 + (vz - water[2]) ** 2)
             fastest = max(fastest, speed)
-            reynolds = max(speed * panels[n, 2] / panels[n, 3], LEAST_REYNOLDS)
+            reynolds = max(speed * panels[n, LENGTH] / panels[n, VISCOSITY], LEAST_REYNOLDS)
             friction = 0.075 / (math.log10(reynolds) - 2.0) ** 2
-            i = nodes[h]
-            for t in range(spans[i, 0], spans[i, 1]):
+            i = hulls.nodes[h]
+            for t in range(hulls.spans[i, 0], hulls.spans[i, 1]):
                 px, py, pz = placed(
                     origin,
                     turn,
@@ -115,7 +118,7 @@ def add_panels(
                     * density
                     * size
                     * share
-                    * (panels[n, 0] if into > 0.0 else panels[n, 1])
+                    * (panels[n, LEADING] if into > 0.0 else panels[n, TRAILING])
                     * abs(into)
                     * into
                 )
@@ -133,7 +136,7 @@ def add_panels(
         if fastest < 0.0:
             continue
         # its power over a timestep, beside what the body's motion relative to the water holds
-        mass, inertias = rigid_body(moving, n)
+        mass, inertias = rigid_body(damping, bodies, n)
         least = min(inertias[0], inertias[1], inertias[2])
         push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
         twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import local
 from buoyancy_mj.kernels.clip import placed
 from buoyancy_mj.kernels.local import HEAD, ROOM, elevations, gather, heads, surface
+from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.kernels.waves import swing
 
 SMALL = 0.3
@@ -293,34 +294,25 @@ def typical(waves: NDArray[np.float64]) -> NDArray[np.float64]:
 
 @njit(cache=True, error_model="numpy")
 def press_hulls(
-    vertices,  # as for `clip.submerge_hulls`
-    faces,
-    areas,
-    nodes,
-    spans,
-    boxes,
-    moments,
-    whole,
-    typical,  # (DEPTHS,) see `typical`
-    frames,
-    positions,
-    rotations,
-    level,
-    waves,
-    time,
-    dynamic,  # whether the pressure is that of linear waves, or hydrostatic under their surface
+    hulls,  # `hulls.Hulls`
+    geoms,  # `multibody.Geoms`
+    sea,  # `sea.Sea`
+    time,  # [s]
     depths,  # scratch
     out,  # (h, 6) force over rho g [m^3] and torque over rho g about the frame's origin [m^4], world frame
 ):
     """The pressure of the water on the wet side of each hull."""
-    sea = np.empty(local.NEAR + 6 * waves.shape[0])
+    level, waves, dynamic = sea.level, sea.waves, sea.pressure == PressureModel.froude_krylov
+    vertices, faces, areas, spans = hulls.vertices, hulls.faces, hulls.areas, hulls.spans
+    boxes, moments, whole, frames = hulls.boxes, hulls.moments, hulls.whole, hulls.frames
+    near = np.empty(local.NEAR + 6 * waves.shape[0])
     # rooms for the points of triangles, for what nodes ask, and for the corners in a leaf
     points, asked = np.empty((ROOM + 3, PLACES)), np.empty((ROOM, PLACES))
     corners = np.empty((ROOM, depths.shape[0]))
     waiting = np.empty(PLACES // len(_STENCIL), np.int64)
     sums, turned = np.empty(6), np.empty(6)
     for h in range(frames.shape[0]):
-        origin, r = positions[frames[h]], rotations[frames[h]]
+        origin, r = geoms.geom_xpos[frames[h]], geoms.geom_xmat[frames[h]]
         out[h, :] = 0.0
         # what is dry needs no waves
         x, y, z = placed(origin, r, whole[h, 5], whole[h, 6], whole[h, 7])
@@ -329,18 +321,28 @@ def press_hulls(
         if level + eta - z <= -radius - spread:
             continue
         gather(
-            waves, x, y, z - level, eta, time, radius, int(whole[h, 12]), whole[h, 13], dynamic, sea
+            waves,
+            x,
+            y,
+            z - level,
+            eta,
+            time,
+            radius,
+            int(whole[h, 12]),
+            whole[h, 13],
+            dynamic,
+            near,
         )
         # triangles in the world, nodes in the frame; both about its origin
         sums[:], turned[:] = 0.0, 0.0
         base = (origin[0], origin[1], origin[2] - level)
         count = many = 0
-        i, end = nodes[h], nodes[h + 1]
+        i, end = hulls.nodes[h], hulls.nodes[h + 1]
         while i < end:
             e0, e1, e2 = boxes[i, 3], boxes[i, 4], boxes[i, 5]
             x, y, z = placed(origin, r, boxes[i, 0], boxes[i, 1], boxes[i, 2])
             size = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-            eta, along, across = surface(sea, x, y, time)
+            eta, along, across = surface(near, x, y, time)
             # the depth of the middle of the box, and how much less or more any point of it has
             depth = level + eta - z
             h0 = along * r[0] + across * r[3] - r[6]
@@ -352,15 +354,15 @@ def press_hulls(
                 i = after
                 continue
             wet = depth >= reach
-            most = typical[
-                int(min((depth - reach) * typical[0], DEPTHS - 1.0)) if wet and dynamic else 0
+            most = hulls.typical[
+                int(min((depth - reach) * hulls.typical[0], DEPTHS - 1.0)) if wet and dynamic else 0
             ]
             if wet and most * size <= SMALL and size > 0.0:
                 if many == waiting.shape[0]:
                     many = _sum_up_nodes(
-                        moments, boxes, waiting, many, asked, sea, time, dynamic, turned
+                        moments, boxes, waiting, many, asked, near, time, dynamic, turned
                     )
-                _ask(boxes[i], size, origin, r, level, sea, asked, many * len(_STENCIL))
+                _ask(boxes[i], size, origin, r, level, near, asked, many * len(_STENCIL))
                 waiting[many] = i
                 many += 1
                 i = after
@@ -373,9 +375,13 @@ def press_hulls(
                 x, y, z = placed(
                     base, r, vertices[first + n, 0], vertices[first + n, 1], vertices[first + n, 2]
                 )
-                corners[0, n], corners[1, n], corners[2, n] = x - sea[local.X], y - sea[local.Y], z
+                corners[0, n], corners[1, n], corners[2, n] = (
+                    x - near[local.X],
+                    y - near[local.Y],
+                    z,
+                )
             if not wet:
-                elevations(sea, corners, last - first, time)
+                elevations(near, corners, last - first, time)
             for n in range(last - first):
                 depths[n] = 1.0 if wet else corners[HEAD, n] - corners[2, n]
             for f in range(spans[i, 0], spans[i, 1]):
@@ -388,11 +394,11 @@ def press_hulls(
                 s = placed(base, r, vertices[o, 0], vertices[o, 1], vertices[o, 2])
                 area = _area(r, areas[f])
                 count = _strew_wet(
-                    p, q, s, dj, dk, do, area, points, count, sea, base, time, dynamic, most, sums
+                    p, q, s, dj, dk, do, area, points, count, near, base, time, dynamic, most, sums
                 )
             i = after
-        _sum_up(points, count, sea, base, time, dynamic, sums)
-        _sum_up_nodes(moments, boxes, waiting, many, asked, sea, time, dynamic, turned)
+        _sum_up(points, count, near, base, time, dynamic, sums)
+        _sum_up_nodes(moments, boxes, waiting, many, asked, near, time, dynamic, turned)
         force, torque = (
             _area(r, (turned[0], turned[1], turned[2])),
             _area(r, (turned[3], turned[4], turned[5])),

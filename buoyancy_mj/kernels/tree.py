@@ -17,8 +17,10 @@ import math
 import numpy as np
 from numba import njit
 
-MOMENTS = 31
-"""Numbers in a row of moments: 3 + 9 + 18 + 1."""
+AREA, MOMENTS = 30, 31
+"""Column of the area in a row of moments, the last, and how many there are: 3 + 9 + 18 + 1."""
+FIRST_FACE, END_FACE, FIRST_VERTEX, END_VERTEX, BEHIND = range(5)
+"""Columns of the span of a node: its faces, its vertices, and the node behind all that are below it."""
 
 
 @njit(cache=True, error_model="numpy")

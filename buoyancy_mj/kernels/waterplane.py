@@ -16,15 +16,8 @@ AREA, FIRST, SECOND, EXTENTS, COLUMNS = 0, slice(1, 3), slice(3, 6), slice(6, 10
 
 @njit(cache=True, error_model="numpy")
 def waterplanes(
-    vertices,  # as for `clip.submerge_hulls`
-    faces,
-    nodes,
-    spans,
-    boxes,
-    whole,
-    frames,
-    positions,
-    rotations,
+    hulls,  # `hulls.Hulls`
+    geoms,  # `multibody.Geoms`
     about,  # (3,) the point that all is about
     level,
     depths,  # scratch
@@ -32,8 +25,10 @@ def waterplanes(
     # highest x, y of the waterline
 ):
     """The waterplane of each hull on still water, seen from above, in the world's axes."""
+    vertices, faces, spans, boxes = hulls.vertices, hulls.faces, hulls.spans, hulls.boxes
+    whole, frames = hulls.whole, hulls.frames
     for h in range(frames.shape[0]):
-        origin, r = positions[frames[h]], rotations[frames[h]]
+        origin, r = geoms.geom_xpos[frames[h]], geoms.geom_xmat[frames[h]]
         out[h, 0:6] = 0.0
         out[h, 6:8], out[h, 8:10] = math.inf, -math.inf
         still = level - origin[2]
@@ -41,7 +36,7 @@ def waterplanes(
         corner = (origin[0] - about[0], origin[1] - about[1], 0.0)
         mx, my, _ = placed(corner, r, whole[h, 5], whole[h, 6], whole[h, 7])
         a = ax = ay = axx = axy = ayy = 0.0
-        i, end = nodes[h], nodes[h + 1]
+        i, end = hulls.nodes[h], hulls.nodes[h + 1]
         while i < end:
             depth = still - (r[6] * boxes[i, 0] + r[7] * boxes[i, 1] + r[8] * boxes[i, 2])
             reach = abs(r[6]) * boxes[i, 3] + abs(r[7]) * boxes[i, 4] + abs(r[8]) * boxes[i, 5]

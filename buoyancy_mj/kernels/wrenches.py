@@ -4,6 +4,8 @@ import math
 
 from numba import njit
 
+from buoyancy_mj.kernels.multibody import last_dof
+
 
 @njit(cache=True, error_model="numpy")
 def add_buoyancy(wet, bodies, weight, xipos, out):
@@ -62,35 +64,23 @@ def merge(wet, owners, out):
 @njit(cache=True, error_model="numpy")
 def project(
     wrench,  # (nbody, 6) force and torque about xipos, world frame
-    bodies,  # (n,) those that have one
-    xipos,  # (nbody, 3)
-    subtree_com,  # (nbody, 3)
-    roots,  # (nbody,)
-    parents,  # (nbody,)
-    dofnum,  # (nbody,)
-    dofadr,  # (nbody,)
-    dof_parents,  # (nv,)
-    cdof,  # (nv, 6) MuJoCo's: rotation, then translation at the root's centre of mass
+    wet_bodies,  # (n,) those that have one
+    bodies,  # `multibody.Bodies`
+    joints,  # `multibody.Joints`
     qfrc,  # (nv,)
 ):
     """Add J^T w to the generalized forces `qfrc`, as MuJoCo's mj_applyFT does for each body."""
-    for n in range(bodies.shape[0]):
-        b = bodies[n]
+    for n in range(wet_bodies.shape[0]):
+        b = wet_bodies[n]
         fx, fy, fz = wrench[b, 0], wrench[b, 1], wrench[b, 2]
         # the torque about the point that the joints' axes are given at
-        root = roots[b]
-        x, y, z = (
-            xipos[b, 0] - subtree_com[root, 0],
-            xipos[b, 1] - subtree_com[root, 1],
-            xipos[b, 2] - subtree_com[root, 2],
-        )
+        com, at = bodies.subtree_com[bodies.body_rootid[b]], bodies.xipos[b]
+        x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
         tx = wrench[b, 3] + y * fz - z * fy
         ty = wrench[b, 4] + z * fx - x * fz
         tz = wrench[b, 5] + x * fy - y * fx
-        while b > 0 and dofnum[b] == 0:
-            b = parents[b]
-        i = dofadr[b] + dofnum[b] - 1 if b > 0 else -1
+        i = last_dof(joints, b)
         while i >= 0:
-            c = cdof[i]
+            c = joints.cdof[i]
             qfrc[i] += c[0] * tx + c[1] * ty + c[2] * tz + c[3] * fx + c[4] * fy + c[5] * fz
-            i = dof_parents[i]
+            i = joints.dof_parentid[i]

@@ -1,6 +1,5 @@
 """Added mass of the bodies of a model: what the vehicle says, what the user gives, or an estimate from its hulls."""
 
-import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 
@@ -13,25 +12,13 @@ from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.custom import find_body, read_custom
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.meshes.mesh import TriMesh
 
 QUANTITY = "added_mass"
 """What MJCF `<custom><numeric>` that state it start with; then a colon, and the name of the body."""
 SOURCES = ("model", "estimate", "none")
 """Where it may come from: what the model states; an estimate for what it does not state; nowhere."""
-
-
-@dataclasses.dataclass(frozen=True)
-class AddedMass:
-    """Added mass of those bodies that have one, when fully wet."""
-
-    bodies: NDArray[np.int64]
-    """Their indices in the model (n,)."""
-    volumes: NDArray[np.float64]
-    """Volume of each body's hulls (n,) [m^3]."""
-    matrices: NDArray[np.float64]
-    """Row by row (n, 36) [kg, kg m, kg m^2]: surge, sway, heave, roll, pitch, yaw along the axes of each body,
-    about its origin."""
 
 
 def resolve_added_mass(

@@ -1,6 +1,5 @@
 """Damping resolved for the bodies of a model: what the model states, or an estimate from what a hull shows to the flow."""
 
-import dataclasses
 import math
 from collections.abc import Sequence
 
@@ -12,43 +11,13 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.custom import read_custom
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.rays import silhouette
 from buoyancy_mj.loads.damping import Damping, Panels
 from buoyancy_mj.meshes.mesh import TriMesh
 
 CELLS = 200
 """Cells along each side of the grid on which a silhouette is measured."""
-
-
-@dataclasses.dataclass(frozen=True)
-class DampingArrays:
-    """Damping of all bodies that have hulls, along the axes of each body: three forces, three torques."""
-
-    bodies: NDArray[np.int64]
-    """Their indices in the model (n,)."""
-    volumes: NDArray[np.float64]
-    """Volume of each body's hulls (n,) [m^3]."""
-    linear: NDArray[np.float64]
-    """Force [N s/m] and torque [N m s] per velocity (n, 6), when fully wet."""
-    quadratic: NDArray[np.float64]
-    """Force [N s^2/m^2] and torque [N m s^2] per velocity squared (n, 6), when fully wet."""
-    coupled: NDArray[np.int64]
-    """1 where both are matrices instead, at the body's origin (n,)."""
-    matrices: NDArray[np.float64]
-    """Those (n, 72), linear and quadratic row by row."""
-    radiation: NDArray[np.float64]
-    """Force [N s/m] and torques [N m s] per velocity of heave, roll, pitch, and the waterplane [m^2] of them (n, 4)."""
-    panels: NDArray[np.float64]
-    """Of bodies with drag by panels, see `kernels.panels.add_panels` (n, 5); (0, 5) if none has."""
-    members: NDArray[np.int64]
-    """Indices of those bodies and of what is welded to each, one body after the other (m,)."""
-    member_starts: NDArray[np.int64]
-    """Where those of each begin (n + 1,)."""
-
-    @property
-    def radiates(self) -> bool:
-        """Whether any body loses what the waves take that it makes."""
-        return bool(self.radiation.any())
 
 
 def resolve_damping(

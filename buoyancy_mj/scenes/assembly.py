@@ -9,8 +9,8 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from buoyancy_mj.engine.c_functions import pop_error
 from buoyancy_mj.engine.callbacks import PLUGIN, skips_passive
-from buoyancy_mj.engine.native import pop_error
 from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import (
     BuoyancyError,

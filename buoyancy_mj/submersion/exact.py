@@ -2,14 +2,18 @@
 
 import dataclasses
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MethodError
-from buoyancy_mj.kernels import clip, local, pressure, waterplane
+from buoyancy_mj.kernels import clip, local, pressure, tree, waterplane
+from buoyancy_mj.kernels.arrays import conform
+from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls, Scratch
+from buoyancy_mj.kernels.multibody import Geoms
+from buoyancy_mj.kernels.sea import PressureModel, Sea
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.tree import Tree, build_tree
@@ -67,83 +71,21 @@ class PackedHulls:
             tolerance: see `Exact.tolerance`.
         """
         meshes, fills = hulls.meshes, hulls.fills
-        self.water = water
-        self.frames = hulls.frames
-        self._waves, self._typical = water.rows, pressure.typical(water.rows)
-        self._whole = np.array(
-            [
-                [
-                    *(
-                        fill * m.volume,
-                        *m.centroid,
-                        m.area,
-                        *m.bounds.mean(axis=0),
-                        *(0.5 * m.extents),
-                        fill,
-                    ),
-                    *local.plan(water.rows, 0.5 * float(np.linalg.norm(m.extents))),
-                ]
-                for m, fill in zip(meshes, fills, strict=True)
-            ]
-        )
-        self.volumes = self._whole[:, 0].copy()
-        """Volume that each hull displaces when it is under water (h,) [m^3]."""
         edges = _longest_edges(meshes, hulls.bodies, water, tolerance)
         trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
-        starts = np.cumsum([0, *(len(tree.vertices) for tree in trees)])
-        firsts = np.cumsum([0, *(len(tree.faces) for tree in trees)])
-        self._nodes = np.cumsum([0, *(len(tree.spans) for tree in trees)])
-        self._vertices = np.concatenate([tree.vertices for tree in trees])
-        # unsigned, since Numba asks of a signed index whether it counts from the end
-        self._faces = np.concatenate(
-            [t.faces + start for t, start in zip(trees, starts, strict=False)]
-        ).astype(np.uint32)
-        self._spans = np.concatenate(
-            [
-                t.spans + np.array([f, f, v, v, n])
-                for t, f, v, n in zip(trees, firsts, starts, self._nodes, strict=False)
-            ]
-        )
-        self._boxes = np.concatenate([tree.boxes for tree in trees])
-        self._moments = np.concatenate([tree.moments for tree in trees])
-        # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area itself stays
-        self._moments[:, :-1] *= np.repeat(fills, np.diff(self._nodes))[:, None]
-        a, b, c = self._vertices[self._faces.T]
-        vectors = 0.5 * np.cross(b - a, c - a)
-        shares = np.repeat(fills, np.diff(firsts))[:, None]
-        self._areas = np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)])
-        leaves = self._spans[:, 4] == np.arange(len(self._spans)) + 1
-        most = int(np.diff(self._spans[leaves, 2:4]).max())
-        self._depths, self._swell = np.empty((5, most)), np.empty((len(self._waves), 7))
+        self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, water))
+        """The hulls as kernels read them."""
+        self._sea = sea_arrays(water)
+        spans = self.hulls.spans
+        leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
+        vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
+        most = int(vertices[leaves].max())
+        self.scratch = Scratch(np.empty((5, most)), np.empty((len(self._sea.waves), 7)))
+        """Where `submerge` and `press` work."""
+        self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
+        """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume, centroid, wetted area, waterplane area; see `methods.Packed`."""
-
-    ARRAYS = (
-        "vertices", "faces", "areas", "nodes", "spans", "boxes", "moments", "whole", "typical", "frames", "depths",
-        "swell",
-    )  # fmt: skip
-    """What describes the hulls, and what is worked in, see `kernels.clip.submerge_hulls`."""
-
-    @property
-    def arrays(self) -> Mapping[str, NDArray[Any]]:
-        """The arrays of `ARRAYS`, for compiled code to submerge the hulls without Python."""
-        return {
-            name: getattr(self, "frames" if name == "frames" else f"_{name}")
-            for name in self.ARRAYS
-        }
-
-    @property
-    def triangles(self) -> tuple[NDArray[Any], ...]:
-        """What `kernels.panels` reads of the hulls."""
-        return (
-            self._vertices,
-            self._faces,
-            self._areas,
-            self._nodes,
-            self._spans,
-            self._whole,
-            self.frames,
-        )
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -159,25 +101,8 @@ class PackedHulls:
         /,
     ) -> NDArray[np.float64]:
         """Submerge all hulls at a time [s]; return `results`, see `methods.Packed`."""
-        clip.submerge_hulls(
-            self._vertices,
-            self._faces,
-            self._areas,
-            self._nodes,
-            self._spans,
-            self._boxes,
-            self._moments,
-            self._whole,
-            self.frames,
-            positions,
-            rotations,
-            self.water.level,
-            self._waves,
-            time,
-            self._depths,
-            self._swell,
-            self.results,
-        )
+        geoms = Geoms(positions, rotations)
+        clip.submerge_hulls(self.hulls, geoms, self._sea, time, self.scratch, self.results)
         return self.results
 
     def press(
@@ -189,25 +114,14 @@ class PackedHulls:
         dynamic: bool,
     ) -> NDArray[np.float64]:
         """Pressure on all hulls (h, 6), see `kernels.pressure.press_hulls`."""
-        rows = np.empty((len(self._whole), 6))
+        rows = np.empty((len(self.volumes), 6))
+        model = PressureModel.froude_krylov if dynamic else PressureModel.hydrostatic
         pressure.press_hulls(
-            self._vertices,
-            self._faces,
-            self._areas,
-            self._nodes,
-            self._spans,
-            self._boxes,
-            self._moments,
-            self._whole,
-            self._typical,
-            self.frames,
-            positions,
-            rotations,
-            self.water.level,
-            self._waves,
+            self.hulls,
+            Geoms(positions, rotations),
+            self._sea._replace(pressure=int(model)),
             time,
-            dynamic,
-            self._depths[0],
+            self.scratch.depths[0],
             rows,
         )
         return rows
@@ -219,23 +133,70 @@ class PackedHulls:
         about: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         """Waterplanes of all hulls on the still level about a point (h, 10), see `kernels.waterplane.waterplanes`."""
-        rows = np.empty((len(self._whole), waterplane.COLUMNS))
+        rows = np.empty((len(self.volumes), waterplane.COLUMNS))
         waterplane.waterplanes(
-            self._vertices,
-            self._faces,
-            self._nodes,
-            self._spans,
-            self._boxes,
-            self._whole,
-            self.frames,
-            positions,
-            rotations,
+            self.hulls,
+            Geoms(positions, rotations),
             about,
-            self.water.level,
-            self._depths[0],
+            self._sea.level,
+            self.scratch.depths[0],
             rows,
         )
         return rows
+
+
+def sea_arrays(water: Water, pressure_model: PressureModel = PressureModel.archimedes) -> Sea:
+    """A sea as kernels read it."""
+    return conform(
+        Sea(water.rows, water.current_rows, water.density, water.level, int(pressure_model))
+    )
+
+
+def _hulls(
+    meshes: Sequence[TriMesh],
+    trees: Sequence[Tree],
+    fills: NDArray[np.float64],
+    frames: NDArray[np.int64],
+    water: Water,
+) -> Hulls:
+    """Meshes and their trees, joined; see `PackedHulls` for the arguments."""
+    first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
+    first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
+    first_node = np.cumsum([0, *(len(t.spans) for t in trees)])
+    starts = list(zip(first_face, first_vertex, first_node, strict=True))[:-1]
+    vertices = np.concatenate([t.vertices for t in trees])
+    faces = np.concatenate([t.faces + v for t, (_, v, _) in zip(trees, starts, strict=True)])
+    spans = [
+        t.spans + np.array([f, f, v, v, n]) for t, (f, v, n) in zip(trees, starts, strict=True)
+    ]
+
+    # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area itself stays
+    moments = np.concatenate([t.moments for t in trees])
+    moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
+    a, b, c = vertices[faces.T]
+    vectors = 0.5 * np.cross(b - a, c - a)
+    shares = np.repeat(fills, np.diff(first_face))[:, None]
+
+    return Hulls(
+        vertices,
+        faces,
+        np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)]),
+        first_node,
+        np.concatenate(spans),
+        np.concatenate([t.boxes for t in trees]),
+        moments,
+        np.array([_whole(mesh, fill, water) for mesh, fill in zip(meshes, fills, strict=True)]),
+        pressure.typical(water.rows),
+        frames,
+    )
+
+
+def _whole(mesh: TriMesh, fill: float, water: Water) -> list[float]:
+    """One row of `Hulls.whole`."""
+    half = 0.5 * mesh.extents
+    plan = local.plan(water.rows, float(np.linalg.norm(half)))
+    middle = mesh.bounds.mean(axis=0)
+    return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, *plan]
 
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:

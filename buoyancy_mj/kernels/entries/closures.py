@@ -1,41 +1,38 @@
-"""Compiled functions with numbers bound to them: what a C function pointer cannot carry else."""
+"""Kernels as C functions with numbers bound to them: what a C function pointer cannot carry else."""
 
-import ctypes
 import functools
+from collections.abc import Callable
 from typing import Any
 
 import llvmlite.binding as llvm
+import numba
 from llvmlite import ir
 
-_WORD, _INT = ir.IntType(64), ir.IntType(32)
-_TYPES: dict[Any, ir.Type] = {ctypes.c_int64: _WORD, ctypes.c_int: _INT, None: ir.VoidType()}
+_WORD = ir.IntType(64)
+_TYPES = {numba.int64: _WORD, numba.int32: ir.IntType(32), numba.void: ir.VoidType()}
 
 
 class Closure:
-    """The C function f(...) that calls the compiled function at `target` as target(..., *bound) and returns what it gives.
+    """The C function f(...) that calls a kernel as kernel(..., *bound) and returns what it gives.
 
-    It takes no lock and knows no Python. Its code lives as long as this object.
+    The annotations of the kernel's arguments and of what it gives are Numba's types; pointers and
+    bound numbers are 64-bit words. The function takes no lock and knows no Python. Its code lives as
+    long as this object.
     """
 
-    def __init__(
-        self, target: int, result: type | None, arguments: tuple[type, ...], *bound: int
-    ) -> None:
-        """Compile it.
-
-        Args:
-            target: address of the function called; pointers and bound numbers are 64-bit words to it.
-            result: ctypes.c_int, ctypes.c_int64 or None.
-            arguments: of those types.
-            bound: appended to the arguments.
-        """
-        kinds = [_TYPES[kind] for kind in arguments]
+    def __init__(self, kernel: Callable[..., Any], *bound: int) -> None:
+        target = _WORD(compile_kernel(kernel).address)
+        result, kinds = _signature(kernel)
         module = ir.Module()
-        closed = ir.Function(module, ir.FunctionType(_TYPES[result], kinds), "closed")
+        free = [_TYPES[kind] for kind in kinds[: len(kinds) - len(bound)]]
+        closed = ir.Function(module, ir.FunctionType(_TYPES[result], free), "closed")
         builder = ir.IRBuilder(closed.append_basic_block())
-        kind = ir.FunctionType(_TYPES[result], kinds + [_WORD] * len(bound))
-        called = builder.inttoptr(_WORD(target), kind.as_pointer())
-        returned = builder.call(called, [*closed.args, *(_WORD(number) for number in bound)])
-        if result is None:
+        kind = ir.FunctionType(_TYPES[result], free + [_WORD] * len(bound))
+        returned = builder.call(
+            builder.inttoptr(target, kind.as_pointer()),
+            [*closed.args, *(_WORD(number) for number in bound)],
+        )
+        if result == numba.void:
             builder.ret_void()
         else:
             builder.ret(returned)
@@ -45,6 +42,19 @@ class Closure:
         self._engine.finalize_object()
         self.address = self._engine.get_function_address("closed")
         """Of the function."""
+
+
+@functools.cache
+def compile_kernel(kernel: Callable[..., Any]) -> Any:
+    """A kernel as a C function, with its `address`; compiled if no earlier run has left it compiled."""
+    result, kinds = _signature(kernel)
+    return numba.cfunc(result(*kinds), cache=True)(kernel)
+
+
+def _signature(kernel: Callable[..., Any]) -> tuple[Any, list[Any]]:
+    """What a kernel gives, and its arguments, as Numba's types."""
+    *kinds, result = kernel.__annotations__.values()
+    return result, kinds
 
 
 @functools.cache

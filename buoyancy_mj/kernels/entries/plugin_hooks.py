@@ -1,91 +1,119 @@
 """What an engine plugin is made of: C functions that the engine calls, each with its own small part of the work."""
 
-import numpy as np
-from numba import carray, njit
+from typing import NamedTuple
 
-from buoyancy_mj.kernels.entries.passive import Context, Id, Offset, Record, Water, act_or_fail
-from buoyancy_mj.kernels.entries.pointers import call, grid, pointer, word, words
+import numpy as np
+from numba import int32, int64, njit, void
+
+from buoyancy_mj.kernels.entries.passive import WaterTable, act_or_fail
+from buoyancy_mj.kernels.entries.pointers import call, set_word, word
+from buoyancy_mj.kernels.entries.views import WORDS, slot, view, view_engine
+from buoyancy_mj.kernels.multibody import Identity
+from buoyancy_mj.kernels.passes import ALIVE, AUGMENTED, DATA, MODEL, SIZES, WATER, Record
+
+_IDS = WORDS * slot(Record, "ids")
+
+
+class Context(NamedTuple):
+    """What a plugin is given."""
+
+    plugin_data: int
+    """Byte offset of mjData.plugin_data."""
+    resolve: int
+    """A C function that finds the water of a model."""
+    error: int
+    """MuJoCo's mju_error."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _slot(data, instance, context):
-    """Address of the word that the engine keeps for an instance in its data."""
-    return word(data + word(context + 8 * Context.plugin_data)) + 8 * instance
+    """Address of the word that the engine keeps for an instance in its data: the address of a record, or 0."""
+    return word(data + view(context, Context).plugin_data) + 8 * instance
 
 
 @njit(cache=True, error_model="numpy")
-def _resolved(model, data, instance, context):
+def _resolve(model, data, instance, context):
     """Let Python find the water of a model and put a record of it into the data; tells the engine what fails."""
-    text = call(word(context + 8 * Context.resolve), model, data, instance, 0)
+    links = view(context, Context)
+    text = call(links.resolve, model, data, instance, 0)
     if text != 0:
-        call(word(context + 8 * Context.error), text, 0, 0, 0)
+        call(links.error, text, 0, 0, 0)
 
 
-def nstate(model, instance):
+def nstate(model: int64, instance: int32) -> int32:
     """The engine asks how many numbers of an instance are part of a state: none."""
     return 0
 
 
-def reset(model, state, record, instance):
+def reset(model: int64, state: int64, record: int64, instance: int32) -> void:
     """The engine resets a data: no loads are of it any more."""
     if record != 0:
-        words(record, Record.ids)[Id.data] = 0
+        view(record, Record).ids[DATA] = 0
 
 
-def init(model, data, instance, context):
+def init(model: int64, data: int64, instance: int32, context: int64) -> int32:
     """The engine has made a data."""
-    carray(pointer(_slot(data, instance, context)), (1,), np.int64)[0] = 0
-    _resolved(model, data, np.int64(instance), context)
+    set_word(_slot(data, instance, context), 0)
+    _resolve(model, data, np.int64(instance), context)
     return 0
 
 
-def destroy(data, instance, context):
+def destroy(data: int64, instance: int32, context: int64) -> void:
     """The engine frees a data: its record may serve another."""
     record = word(_slot(data, instance, context))
     if record != 0:
-        words(record, Record.ids)[Id.alive] = 0
+        view(record, Record).ids[ALIVE] = 0
 
 
-def copy(target, model, source, instance, context):
+def copy(target: int64, model: int64, source: int64, instance: int32, context: int64) -> void:
     """The engine copies a data: the record's contents go along, if both are of one water."""
     one, other = word(_slot(target, instance, context)), word(_slot(source, instance, context))
-    if (
-        one == 0
-        or other == 0
-        or words(one, Record.ids)[Id.water] != words(other, Record.ids)[Id.water]
-    ):
+    if one == 0 or other == 0:
         return
-    for k in range(Record.ids):
-        grid(one, k)[:, :] = grid(other, k)
-    words(one, Record.ids)[Id.heavier] = words(other, Record.ids)[Id.heavier]
-    words(one, Record.ids)[Id.data] = target if words(other, Record.ids)[Id.data] == source else 0
+    ids, others = view(one, Record).ids, view(other, Record).ids
+    if ids[WATER] != others[WATER]:
+        return
+    # arrays of one water's records are of one size, and all are of 64-bit words
+    for n in range(0, _IDS, WORDS):
+        into, source_words = word(one + 8 * n), word(other + 8 * n)
+        for i in range(word(one + 8 * n + 8) * word(one + 8 * n + 16)):
+            set_word(into + 8 * i, word(source_words + 8 * i))
+    ids[AUGMENTED] = others[AUGMENTED]
+    ids[DATA] = target if others[DATA] == source else 0
 
 
-def compute(model, data, instance, capability, context):
+def compute(model: int64, data: int64, instance: int32, capability: int32, context: int64) -> void:
     """The engine wants the passive forces of an instance."""
     record = word(_slot(data, instance, context))
     # stepped with another model than before, or with other geoms in it
-    if (
-        record == 0
-        or words(record, Record.ids)[Id.model] != model
-        or words(record, Record.ids)[Id.sizes] != _sizes(model, record)
-    ):
-        _resolved(model, data, np.int64(instance), context)
+    if record == 0 or _is_of_another(model, data, record):
+        _resolve(model, data, np.int64(instance), context)
         record = word(_slot(data, instance, context))
         if record == 0:
             # Python is just reading the model
             return
-        words(record, Record.ids)[Id.sizes] = _sizes(model, record)
-    act_or_fail(model, data, words(record, Record.ids)[Id.water], record)
+        view(record, Record).ids[SIZES] = _sum_sizes(model, data, record)
+    act_or_fail(model, data, view(record, Record).ids[WATER], record)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _is_of_another(model, data, record):
+    """Whether a record is of another model, or of other sizes of its geoms."""
+    ids = view(record, Record).ids
+    return ids[MODEL] != model or ids[SIZES] != _sum_sizes(model, data, record)
 
 
 @njit(cache=True, error_model="numpy")
-def _sizes(model, record):
+def _sum_sizes(model, data, record):
     """A sum over the bits of the sizes of all geoms, which another size changes."""
-    offsets = words(words(record, Record.ids)[Id.water], Water.offsets)
-    count = 3 * word(model + offsets[Offset.ngeom])
-    bits = carray(pointer(word(model + offsets[Offset.geom_size])), (count,), np.int64)
+    offsets = view(view(record, Record).ids[WATER], WaterTable).offsets
+    sizes = view_engine(model, data, offsets, Identity).geom_size
     total = np.int64(0)
-    for i in range(count):
-        total = 31 * total + bits[i]
+    for geom in range(sizes.shape[0]):
+        for k in range(3):
+            total = 31 * total + sizes[geom, k]
     return total
+
+
+HOOKS = (nstate, reset, init, destroy, copy, compute)
+"""The C functions, by the names that MuJoCo has for them."""

@@ -1,0 +1,171 @@
+"""What compiled code needs to act without Python: tables of the water and of where results go, and C functions."""
+
+import ctypes
+import functools
+import threading
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from buoyancy_mj.engine import layout
+from buoyancy_mj.engine.c_functions import address_of, encode_text, wrap_python
+from buoyancy_mj.engine.load_model import LoadModel
+from buoyancy_mj.errors import EngineError
+from buoyancy_mj.kernels.entries import passive
+from buoyancy_mj.kernels.entries.closures import Closure, compile_kernel
+from buoyancy_mj.kernels.entries.passive import Links, WaterTable, Workplace
+from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
+from buoyancy_mj.kernels.hulls import Scratch
+from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS
+from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
+from buoyancy_mj.submersion.exact import PackedHulls
+
+THREADS = 64
+"""Threads that may act at once in one water; more take turns. What is not used costs no memory."""
+_WET, _IDS = (8 * WORDS * slot(Record, name) for name in ("wet", "ids"))
+"""Bytes in the table of a record before the addresses of these arrays."""
+
+
+def read_ids(record: int) -> NDArray[np.int64]:
+    """`Record.ids` of the record whose table is at an address."""
+    words = ctypes.cast(layout.word(record + _IDS), ctypes.POINTER(ctypes.c_int64))
+    return np.ctypeslib.as_array(words, (IDS,))
+
+
+class CompiledWater:
+    """The water of one `Buoyancy`, ready for compiled code."""
+
+    def __init__(self, model: mujoco.MjModel, load_model: LoadModel, lock: threading.RLock) -> None:
+        """Gather it.
+
+        Args:
+            model: the model.
+            load_model: what acts on it; hulls of `Exact` are submerged by compiled code.
+            lock: held while hulls are submerged by Python code.
+
+        Raises:
+            EngineError: see `require_known_layout`.
+        """
+        require_known_layout()
+        self._load_model, self._lock = load_model, lock
+        self._sizes, self._geoms = (model.nbody, model.nC), model.ngeom
+        self._workers = [_Worker(load_model.scratch, self._new_record()) for _ in range(THREADS)]
+        self._submerge = wrap_python(self._submerged)
+        self._text = encode_text(
+            "gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>"
+        )
+        self._offsets = np.array([layout.offset(path) for path in PATHS], np.int64)
+        exact = isinstance(load_model.packed, PackedHulls)
+        links = [
+            model._address,
+            model.signature,
+            compile_kernel(passive.act).address,
+            0 if exact else address_of(self._submerge),
+            layout.symbol("mju_error"),
+            ctypes.addressof(self._text),
+            layout.symbol("mj_factorM"),
+            layout.symbol("mj_projectConstraint"),
+        ]
+        self._table = Table(
+            WaterTable(
+                load_model.arrays,
+                Links._make(np.array(links, np.uint64).astype(np.int64)),
+                self._offsets.ctypes.data,
+                np.array([worker.table.address for worker in self._workers]),
+            )
+        )
+        self.address = self._table.address
+        """Of the table of the water."""
+        self._records: list[Table[Record]] = []
+        self._room = 16
+
+    def callback(self, previous: int = 0, *, copies: bool = False) -> Closure:
+        """A C function void(const mjModel*, mjData*) that MuJoCo may call from any thread.
+
+        Args:
+            previous: such a function that is called first.
+            copies: act on copies of the model too, known by MuJoCo's compilation signature.
+        """
+        return Closure(passive.callback, self.address, previous, int(copies))
+
+    def record(self, model: int) -> Table[Record]:
+        """A record for one data of the model at an address, in use until `ALIVE` of its `ids` is 0."""
+        if len(self._records) >= self._room:
+            self._records = [record for record in self._records if record.arrays.ids[ALIVE]]
+            self._room = 2 * len(self._records) + 16
+        record = self._new_record()
+        record.arrays.ids[[ALIVE, MODEL, WATER]] = 1, model, self.address
+        self._records.append(record)
+        return record
+
+    @property
+    def used(self) -> bool:
+        """Whether any record is in use."""
+        return any(record.arrays.ids[ALIVE] for record in self._records)
+
+    def last_record(self, data: int) -> Record | None:
+        """What the last pass left of the data at an address; None if none did, or many others came after it."""
+        records = [record for record in self._all_records() if record.ids[DATA] == data]
+        return max(records, key=lambda record: float(record.instant[0]), default=None)
+
+    def forget(self, data: int) -> None:
+        """Forget that: something else acts on the data."""
+        for record in self._all_records():
+            if record.ids[DATA] == data:
+                record.ids[DATA] = 0
+
+    def _new_record(self) -> Table[Record]:
+        return Table(self._load_model.record(*self._sizes))
+
+    def _all_records(self) -> Iterator[Record]:
+        yield from (worker.record.arrays for worker in self._workers)
+        yield from (record.arrays for record in self._records if record.arrays.ids[ALIVE])
+
+    def _submerged(self, _: int, data: int, record: int) -> None:
+        """Submerge by Python code what the engine's data hold."""
+        # data hold no sizes
+        positions, rotations = (
+            np.ctypeslib.as_array(
+                ctypes.cast(
+                    layout.word(data + layout.offset(f"mjData.{name}")),
+                    ctypes.POINTER(ctypes.c_double),
+                ),
+                (self._geoms, n),
+            )
+            for name, n in (("geom_xpos", 3), ("geom_xmat", 9))
+        )
+        time = float(
+            np.frombuffer(np.int64(layout.word(data + layout.offset("mjData.time"))).tobytes())[0]
+        )
+        with self._lock:
+            wet = self._load_model.packed.submerge(positions, rotations, time, data)
+            target = ctypes.cast(layout.word(record + _WET), ctypes.POINTER(ctypes.c_double))
+            np.ctypeslib.as_array(target, wet.shape)[:] = wet
+
+
+class _Worker:
+    """A workplace for one thread."""
+
+    def __init__(self, scratch: Scratch, record: Table[Record]) -> None:
+        self.record = record
+        self._taken = np.zeros(1, np.int64)
+        room = Scratch(*(np.empty_like(array) for array in scratch))
+        self.table = Table(Workplace(room, self._taken.ctypes.data, record.address))
+
+
+@functools.cache
+def require_known_layout() -> None:
+    """See that this MuJoCo keeps its numbers where compiled code will look for them.
+
+    Raises:
+        EngineError: it does not.
+    """
+    theirs = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY), int(mujoco.mjtSolver.mjSOL_PGS)
+    if theirs != (NO_GRAVITY, PGS):
+        raise EngineError(
+            f"MuJoCo {mujoco.__version__} has other flags than expected; use buoyancy.installed(native=False)"
+        )
+    layout.verify(PATHS)
+    layout.symbol("mju_error")

@@ -1,0 +1,43 @@
+"""`Hulls`: meshes packed into one set of arrays, with the names of the columns of its rows."""
+
+from typing import Annotated, NamedTuple
+
+from buoyancy_mj.kernels.arrays import Corners, Doubles, Words
+
+WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, BOX, FILL, DEGREE, LIMIT = 0, 1, 4, 5, 11, 12, 13
+"""Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its faces, its bounding
+box (6) as middle and half sides, the part of its volume that displaces water, and its `local.plan` (2)."""
+
+
+class Hulls(NamedTuple):
+    """All hulls of a model, each in its own frame, and the trees over their triangles, see `kernels.tree`."""
+
+    vertices: Annotated[Doubles, ("v", 3)]
+    """Of all hulls [m]; leaf by leaf, so that leaves share none."""
+    faces: Annotated[Corners, ("f", 3)]
+    """Indices into the vertices, in the order of the leaves."""
+    areas: Annotated[Doubles, ("f", 4)]
+    """Vector area of each face, times the part of its hull that displaces, and its area [m^2]."""
+    nodes: Annotated[Words, ("h + 1",)]
+    """First node of each hull, and the end of all."""
+    spans: Annotated[Words, ("n", 5)]
+    """What lies under each node."""
+    boxes: Annotated[Doubles, ("n", 6)]
+    """Bounding box of each node: middle and half sides [m]."""
+    moments: Annotated[Doubles, ("n", 31)]
+    """Moments of the vector area under each node, times the part that displaces; and the area."""
+    whole: Annotated[Doubles, ("h", 14)]
+    """Each hull as a whole, in columns `WHOLE_VOLUME` to `LIMIT`."""
+    typical: Annotated[Doubles, ("d",)]
+    """Typical wave numbers of the sea by depth, see `pressure.typical` [rad/m]."""
+    frames: Annotated[Words, ("h",)]
+    """Index of the frame of each hull among the geoms."""
+
+
+class Scratch(NamedTuple):
+    """Arrays to work in, for one thread."""
+
+    depths: Annotated[Doubles, (5, "v")]
+    """As long as the most vertices of a leaf."""
+    swell: Annotated[Doubles, ("w", 7)]
+    """The waves around a hull."""
