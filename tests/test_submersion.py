@@ -11,8 +11,8 @@ from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, submerge
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.submersion import exact
-from buoyancy_mj.submersion import submerge as submersion
 from buoyancy_mj.submersion.hull_set import HullSet
+from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -380,7 +380,7 @@ def test_a_pose_that_is_none_is_told(position, rotation, message):
 
 def test_the_wetted_surface_has_the_wetted_area_and_its_waterline_lies_on_the_water():
     water, turn = Water(level=0.3), turned(7)
-    triangles, line = submersion.wetted_surface(TORUS, np.array([1.0, 2.0, 0.3]), turn, water, 0.0)
+    triangles, line = cut_wetted_surface(TORUS, np.array([1.0, 2.0, 0.3]), turn, water, 0.0)
     a, b, c = triangles.swapaxes(0, 1)
     areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     assert areas.sum() == pytest.approx(

@@ -1,5 +1,5 @@
 """The sea.
 
-Waves, spectra and currents in; elevation, velocity, acceleration and pressure at places and times out.
+In: waves, spectra and currents. Out: elevation, velocity, acceleration and pressure of the water.
 Imports: kernels, errors.
 """

@@ -1,5 +1,5 @@
-"""What of a mesh is under water.
+"""The submerged part of meshes.
 
-Meshes, poses and a sea in; volume, centroid, wetted and waterplane area out, by three methods.
+In: meshes, poses and a sea. Out: volume, centroid, wetted and waterplane area, by three methods.
 Imports: meshes, sea, kernels, errors.
 """

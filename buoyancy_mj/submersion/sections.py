@@ -159,7 +159,8 @@ class PackedSections:
         s, rows, crossings = cut_sections(vertices @ turn.T, faces, self.method.step, top)
         self._counts["sections"] += len(s)
         self._counts["crossings"] += crossings
-        return integrate(rows, s, self.method.rule)[-1]
+        moments: NDArray[np.float64] = integrate(rows, s, self.method.rule)[-1]
+        return moments
 
     def _integrate_along(
         self, h: int, turn: NDArray[np.float64], depth: float
