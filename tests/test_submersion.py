@@ -37,7 +37,7 @@ def turned(seed):
     return Rotation.random(random_state=seed).as_matrix()
 
 
-# closed forms ---------------------------------------------------------------------------------------
+# closed forms
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_an_hourglass_of_two_cones_has_its_volume_through_the_neck(draft, volume
     assert submerge(mesh, (0.0, 0.0, 1.0 - draft)).volume == pytest.approx(volume, abs=1e-7)
 
 
-# an independent slice, and invariances --------------------------------------------------------------
+# an independent slice, and invariances
 
 
 @pytest.mark.parametrize("name", ODD)
@@ -273,7 +273,7 @@ def test_the_waterplane_area_is_how_volume_grows_with_draft():
     )
 
 
-# waves ----------------------------------------------------------------------------------------------
+# waves
 
 
 def test_a_flat_wave_is_still_water():
@@ -350,7 +350,7 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
         assert 0.0 <= wet.volume <= mesh.volume
 
 
-# borders --------------------------------------------------------------------------------------------
+# borders
 
 
 def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
@@ -373,7 +373,7 @@ def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
         ((0.0, 0.0, 0.0), np.eye(2), "it must be a rotation matrix"),
     ],
 )
-def test_a_pose_that_is_none_is_told(position, rotation, message):
+def test_a_pose_that_is_none_is_refused(position, rotation, message):
     with pytest.raises(MeshError, match=message):
         submerge(TORUS, position, rotation)
 

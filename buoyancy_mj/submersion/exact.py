@@ -32,7 +32,7 @@ class Exact:
 
     name: ClassVar[str] = "exact"
     tolerance: float = 2e-3
-    """Part of a body's volume by which straight cuts of its triangles may be off in waves, at worst.
+    """Part of the volume by which straight cuts of triangles may be off in waves, at worst.
 
     The worst case is a side that lies flat in the surface, see `longest_edge`. Elsewhere the error
     is of second order, a hundredth of that and less, and on still water there is none."""
