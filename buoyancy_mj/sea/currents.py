@@ -28,7 +28,9 @@ class CurrentProfile:
             that is not finite.
 
     Example:
-        >>> Water(current=CurrentProfile((0.0, 10.0), ((0.8, 0.0, 0.0), (0.2, 0.0, 0.0))))
+        >>> water = Water(current=CurrentProfile((0.0, 10.0), ((0.8, 0.0, 0.0), (0.2, 0.0, 0.0))))
+        >>> float(water.velocity([0.0, 0.0, -5.0], time=0.0)[0])
+        0.5
     """
 
     depths: tuple[float, ...]
@@ -60,7 +62,9 @@ class CurrentSeries:
             that is not finite.
 
     Example:
-        >>> Water(current=CurrentSeries((0.0, 60.0), ((0.0, 0.0, 0.0), (0.5, 0.0, 0.0))))
+        >>> water = Water(current=CurrentSeries((0.0, 60.0), ((0.0, 0.0, 0.0), (0.5, 0.0, 0.0))))
+        >>> float(water.velocity([0.0, 0.0, -5.0], time=30.0)[0])
+        0.25
     """
 
     times: tuple[float, ...]

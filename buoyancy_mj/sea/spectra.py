@@ -64,7 +64,10 @@ class JonswapSea(IrregularSea):
         WaterError: a value out of its range.
 
     Example:
-        >>> Water(waves=JonswapSea(significant_height=0.5, peak_period=3.0, spreading=10.0, seed=7))
+        >>> sea = JonswapSea(significant_height=0.5, peak_period=3.0, spreading=10.0, seed=7)
+        >>> water = Water(waves=sea)
+        >>> sea.zero_crossing_period
+        2.34...
     """
 
     significant_height: float
@@ -192,7 +195,7 @@ class PiersonMoskowitzSea(IrregularSea):
 
     Example:
         >>> PiersonMoskowitzSea(significant_height=2.0).peak_period
-        7.09...
+        7.07...
     """
 
     significant_height: float

@@ -34,8 +34,8 @@ class Water:
 
     Example:
         >>> water = Water(density=1025.0, waves=RegularWave(0.3, period=4.0), current=(0.5, 0, 0))
-        >>> water.elevation(x=0.0, y=0.0, time=0.0)
-        array(0.3)
+        >>> float(water.elevation(x=0.0, y=0.0, time=0.0))
+        0.3
     """
 
     density: float = 1000.0

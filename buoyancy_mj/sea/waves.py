@@ -44,7 +44,7 @@ class RegularWave:
         WaterError: none or several of the three, or a value out of its range.
 
     Example:
-        >>> RegularWave(0.3, period=4.0, direction=math.pi / 2.0).wavelength
+        >>> RegularWave(0.3, period=4.0).wavelength
         24.98...
     """
 
@@ -142,7 +142,9 @@ class LevelOscillation:
         WaterError: a value out of its range.
 
     Example:
-        >>> Water(waves=LevelOscillation(amplitude=0.3, frequency=0.5))
+        >>> water = Water(waves=LevelOscillation(amplitude=0.3, frequency=0.5))
+        >>> float(water.elevation(x=0.0, y=0.0, time=1.0))
+        -0.3
     """
 
     amplitude: float
@@ -173,8 +175,8 @@ def wavenumber(omega: float, depth: float = math.inf, gravity: float = GRAVITY) 
         gravity: acceleration of gravity, g [m/s^2].
 
     Example:
-        >>> wavenumber(2.0 * math.pi / 8.0, depth=10.0)
-        0.0886...
+        >>> wavenumber(0.785, depth=10.0)
+        0.0885...
     """
     # tanh is 1 to round-off
     deep = omega**2 / gravity

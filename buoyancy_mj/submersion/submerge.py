@@ -56,7 +56,8 @@ def submerge(
         MethodError: there is no such method.
 
     Example:
-        >>> submerge(sphere(0.5), position=(0.0, 0.0, 0.0)).volume
+        >>> from buoyancy_mj.meshes import shapes
+        >>> submerge(shapes.sphere(0.5), position=(0.0, 0.0, 0.0)).volume
         0.2617...
     """
     # the pose
