@@ -72,7 +72,8 @@ def submerge(
     pose = origin[None], turn.reshape(1, 9), float(time)
 
     # the submersion; other methods may carry something from step to step, so they are packed anew
-    parsed, sea = parse_method(method), water or _STILL
+    sea = water or _STILL
+    parsed = parse_method(method)
     if type(parsed) is Exact:
         with _LOCK:
             row = _pack(mesh, sea).submerge(*pose)[0].copy()
