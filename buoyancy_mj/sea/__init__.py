@@ -1,5 +1,6 @@
-"""The sea.
+"""The sea: waves, spectra, currents, and the water that they move in.
 
-In: waves, spectra and currents. Out: elevation, velocity, acceleration and pressure of the water.
-Imports: kernels, errors.
+In: heights, periods, directions, spectra, currents by depth or by time.
+Out: elevation, velocity, acceleration and pressure at any point and time.
+May import: kernels, errors.
 """

@@ -1,5 +1,6 @@
-"""The submerged part of meshes.
+"""The part of a mesh under water, by three methods.
 
-In: meshes, poses and a sea. Out: volume, centroid, wetted and waterplane area, by three methods.
-Imports: meshes, sea, kernels, errors.
+In: meshes, their poses and a sea.
+Out: submerged volume, its centroid, wetted area and waterplane area.
+May import: meshes, sea, kernels, errors.
 """
