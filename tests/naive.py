@@ -67,7 +67,10 @@ def roll(angle):
 
 
 def period(potential, mass, low, high):
-    """Exact period of an oscillation between two turning points of a potential: 2 int dz / sqrt(2 (E - U) / m)."""
+    """Exact period of an oscillation between two turning points of a potential.
+
+    It is 2 int dz / sqrt(2 (E - U) / m).
+    """
     energy = 0.5 * (potential(low) + potential(high))
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
 
@@ -128,7 +131,7 @@ def trimesh_hull(solid):
 
 
 def hull_volume(points):
-    """Volume of a convex hull as the sum of the tetrahedra of its Delaunay triangulation; flat sets have none."""
+    """Volume of a convex hull as the sum of its Delaunay tetrahedra; flat sets have none."""
     try:
         cells = points[Delaunay(points).simplices]
     except QhullError:
@@ -150,7 +153,10 @@ def section(mesh, s):
 
 
 def directly(mesh, position, turn, water, time):
-    """Volume and first moments (3,) about the position, by -d n_z over every triangle, cut at d = 0, d linear on each."""
+    """Volume and first moments (3,) about the position, by -d n_z over every triangle.
+
+    The depth d is linear on each triangle, which is cut at d = 0.
+    """
     points = mesh.vertices @ turn.T
     depths = water.depth(points + position, time)
     volume, moments = 0.0, np.zeros(3)

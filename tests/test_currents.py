@@ -53,10 +53,12 @@ def test_a_series_is_straight_between_its_times_and_held_beyond_them(time):
 def ball(drag=50.0, added=0.0):
     """A neutrally buoyant ball of 10 cm, 1 m deep."""
     mass = 1000.0 * 4.0 / 3.0 * np.pi * 0.001
-    return mujoco.MjModel.from_xml_string(f"""<mujoco><option timestep="0.01" integrator="implicitfast"/><custom>
+    return mujoco.MjModel.from_xml_string(f"""<mujoco>
+        <option timestep="0.01" integrator="implicitfast"/><custom>
         <numeric name="quadratic_damping:b" data="{drag} {drag} {drag} 0 0 0"/>
         <numeric name="added_mass:b" data="{added} {added} {added} 0 0 0"/></custom>
-        <worldbody><body name="b" pos="0 0 -1"><freejoint/><geom type="sphere" size="0.1" mass="{mass}"/></body></worldbody>
+        <worldbody><body name="b" pos="0 0 -1"><freejoint/>
+        <geom type="sphere" size="0.1" mass="{mass}"/></body></worldbody>
         </mujoco>""")
 
 
@@ -74,7 +76,8 @@ def test_a_body_is_carried_by_the_current_at_its_depth(native):
 
 @pytest.mark.parametrize("native", [False, True])
 def test_a_current_that_gathers_speed_takes_added_mass_along(native):
-    # without drag the water's acceleration a acts on the added mass A of a body of mass m: A a / (m + A)
+    # without drag the water's acceleration a acts on the added mass A of a body of mass m:
+    # A a / (m + A)
     model = ball(drag=0.0, added=2.0)
     data = mujoco.MjData(model)
     mass = float(model.body_mass[1])
@@ -130,7 +133,7 @@ def test_currents_stand_in_scenes_and_in_models(tmp_path):
         (lambda: Water(current=(1.0, np.nan, 0.0)), "it must be three finite numbers"),
     ],
 )
-def test_impossible_currents_are_told(make, message):
+def test_impossible_currents_are_refused(make, message):
     with pytest.raises(WaterError, match=message):
         make()
 
@@ -145,14 +148,14 @@ def test_impossible_currents_are_told(make, message):
         ("0,1,2\n0,1,2\n", "must grow from row to row"),
     ],
 )
-def test_files_that_hold_no_current_are_told(tmp_path, text, message):
+def test_files_that_hold_no_current_are_refused(tmp_path, text, message):
     path = tmp_path / "current.csv"
     path.write_text(text)
     with pytest.raises(WaterError, match=message):
         CurrentSeries.read(path)
 
 
-def test_a_missing_file_and_an_unknown_kind_are_told(tmp_path):
+def test_a_missing_file_and_an_unknown_kind_are_refused(tmp_path):
     with pytest.raises(WaterError, match="cannot be read"):
         CurrentSeries.read(tmp_path / "none.csv")
     for current, message in (

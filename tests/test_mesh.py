@@ -70,7 +70,7 @@ def test_an_inside_out_mesh_does_not_exist():
         (np.zeros((3, 3)), [[0, 1, 3]], "faces name vertices 0 to 3; there are 0 to 2"),
     ],
 )
-def test_arrays_that_are_no_mesh_are_told(vertices, faces, message):
+def test_arrays_that_are_no_mesh_are_refused(vertices, faces, message):
     with pytest.raises(MeshError, match=message):
         TriMesh(vertices, faces)
 

@@ -1,4 +1,4 @@
-"""The source paper's methods beside the exact one: closed forms, degenerate sets, where they agree and where not."""
+"""The source paper's methods beside the exact one: where they agree, and where they do not."""
 
 import dataclasses
 import itertools
@@ -56,8 +56,9 @@ HOLLOW = {
     ),
 }
 SHAPES = CONVEX | HOLLOW
-# sections at the default step. Where a torus ends its section grows as c sqrt(z), c = 4 pi R sqrt(2 r), and the
-# trapezoid misses 0.208 c h^1.5 there (zeta(-1/2)): 0.7 % of its volume from both ends, for its 28 sections
+# sections at the default step. Where a torus ends its section grows as c sqrt(z) with
+# c = 4 pi R sqrt(2 r), and the trapezoid misses 0.208 c h^1.5 there (zeta(-1/2)): 0.7 % of its
+# volume from both ends, for its 28 sections
 STEP_ERROR = dict.fromkeys(SHAPES, 2e-3) | {"torus": 7e-3}
 TRUE_HULL = ConvexHull(cut=True, centroid="hull")
 ALL = [
@@ -75,7 +76,7 @@ POSES = [
     for seed, z in enumerate((-0.2, 0.0, 0.1))
 ]
 
-# one interface, one suite of shapes -----------------------------------------------------------------
+# one interface, one suite of shapes
 
 
 @pytest.mark.parametrize("method", ALL, ids=repr)
@@ -168,7 +169,7 @@ def test_a_torus_has_the_hull_of_pappus():
     assert exact / (2.0 * np.pi**2 * 0.16) == pytest.approx(1.38, abs=0.01)
 
 
-# hulls of points ------------------------------------------------------------------------------------
+# hulls of points
 
 EDGES = {
     "none": np.zeros((0, 3)),
@@ -214,7 +215,7 @@ def test_nearly_flat_sets_raise_nothing(seed, thickness):
 
 
 def test_the_mean_of_the_vertices_is_no_centroid():
-    # a pyramid, its base finely divided: the mean sinks to the base, the centroid stays at a quarter
+    # a pyramid, its base finely divided: the mean sinks to the base, the centroid stays put
     side = np.linspace(-1.0, 1.0, 41)
     rim = np.array([(x, y, 0.0) for x in side for y in side if max(abs(x), abs(y)) == 1.0])
     points = np.vstack([rim, [[0.0, 0.0, 1.0]]])
@@ -222,18 +223,18 @@ def test_the_mean_of_the_vertices_is_no_centroid():
     assert hull_moments(points, "vertices")[1][2] <= 0.2 + 1e-12
 
 
-# sorting --------------------------------------------------------------------------------------------
+# sorting
 
 
-def poses_of(mesh, places, turns):
-    """A packed mesh's arguments, one step after the other at 0.01 s."""
+def poses_of(places, turns):
+    """Arguments of `submerge` for one mesh, one step after the other at 0.01 s."""
     for step, (place, turn) in enumerate(zip(places, turns, strict=True)):
         yield np.array([place]), turn.reshape(1, 9), 0.01 * step
 
 
 def run(method, mesh, places, turns, water=None):
     packed = method.pack(HullSet([mesh]), water or Water())
-    volumes = [packed.submerge(*pose)[0, 0] for pose in poses_of(mesh, places, turns)]
+    volumes = [packed.submerge(*pose)[0, 0] for pose in poses_of(places, turns)]
     return np.array(volumes), packed.counts
 
 
@@ -308,7 +309,7 @@ def test_runs_that_take_turns_keep_orders_of_their_own():
     packed = ConvexHull().pack(HullSet([mesh]), Water())
     together = [
         [packed.submerge(*pose, number)[0, 0] for number, pose in enumerate(poses)]
-        for poses in zip(*(poses_of(mesh, places, turn) for turn in turns), strict=True)
+        for poses in zip(*(poses_of(places, turn) for turn in turns), strict=True)
     ]
     np.testing.assert_array_equal(np.array(together).T, alone)
 
@@ -329,7 +330,7 @@ def test_the_cuts_are_found_from_a_walk_too():
     assert checks["vertex_checks"] < checks["vertices"]
 
 
-# sections -------------------------------------------------------------------------------------------
+# sections
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -356,7 +357,8 @@ def test_flat_ends_are_counted_at_both():
 
 @pytest.mark.parametrize(("rule", "order"), [("trapezoid", 2), ("simpson", 3)])
 def test_the_rules_converge_with_their_order(rule, order):
-    # a cone's section is a parabola in z; Simpson's last, shorter interval is a trapezoid of third order
+    # a cone's section is a parabola in z; Simpson's last, shorter interval is a trapezoid of
+    # third order
     cone = naive.cone(1.0, 1.0, sections=64)
     errors = []
     for step in (0.08, 0.04, 0.02, 0.01):
@@ -404,7 +406,7 @@ def test_a_table_along_an_upright_axis_is_the_vertical_method_either_way_up(shap
 
 
 def test_an_axis_of_the_body_cuts_a_heeled_body_wrongly():
-    # half a ball under water is half a ball whatever the axis, but its centroid lies along that axis
+    # half a ball under water is half a ball whatever the axis, but its centroid lies along the axis
     ball, heel = CONVEX["sphere"], np.radians(40.0)
     wet = submerge(ball, (0, 0, 0), naive.roll(heel), method=Sections(axis=(0, 0, 1)))
     assert wet.volume == pytest.approx(0.5 * ball.volume, rel=2e-3)
@@ -465,7 +467,7 @@ def test_an_axis_that_lies_level_is_wet_or_dry():
         assert deep.volume == pytest.approx(ball.volume, rel=2e-3)
 
 
-# what no method should be -----------------------------------------------------------------------------
+# what no method should be
 
 
 @pytest.mark.parametrize(
@@ -504,7 +506,7 @@ def test_an_axis_that_lies_level_is_wet_or_dry():
         ),
     ],
 )
-def test_what_makes_no_sense_is_told(make, message):
+def test_what_makes_no_sense_is_refused(make, message):
     with pytest.raises(MethodError, match=message):
         make()
 
@@ -521,7 +523,7 @@ def test_a_pose_that_left_the_finite_numbers_gives_no_number(method, position):
     )
 
 
-# in the engine ----------------------------------------------------------------------------------------
+# in the engine
 
 
 @pytest.fixture(scope="module")
@@ -562,7 +564,8 @@ def test_forces_of_each_mesh_and_their_resultant_move_a_body_alike(auv, method):
 
 
 def test_an_axis_of_the_body_stands_in_the_body_whatever_frames_its_geoms_have():
-    # MuJoCo turns the frames of mesh geoms to their principal axes: the pressure hull's z lies along its length
+    # MuJoCo turns the frames of mesh geoms to their principal axes: the pressure hull's z lies
+    # along its length
     model = mujoco.MjModel.from_xml_path(str(catalog.models()["sauvc_auv"]))
     data = mujoco.MjData(model)
     data.qpos[2] = -0.05
@@ -614,7 +617,7 @@ def test_rk4_ages_an_order_by_two_steps_a_timestep():
 
 
 @pytest.mark.parametrize("method", [ConvexHull(), Sections(), Sections(axis=(0, 0, 1))], ids=repr)
-def test_a_run_that_diverges_is_told_by_every_method(method):
+def test_a_run_that_diverges_is_reported_by_every_method(method):
     scene = dataclasses.replace(
         read_scene(catalog.scenes()["hourglass_drop_still"]), method=method, duration=0.1
     )
@@ -628,7 +631,8 @@ def test_a_run_that_diverges_is_told_by_every_method(method):
 @pytest.mark.parametrize("method", [TRUE_HULL, Sections(step=2e-3, rule="simpson")])
 @pytest.mark.parametrize("wave", [LevelOscillation(0.3, 0.5), RegularWave(0.3, frequency=0.5)])
 def test_a_ball_rides_the_moving_level_and_the_travelling_wave_alike_by_every_method(method, wave):
-    xml = "<mujoco><worldbody><body><freejoint/><geom type='sphere' size='.2' mass='16'/></body></worldbody></mujoco>"
+    xml = """<mujoco><worldbody><body><freejoint/>
+        <geom type='sphere' size='.2' mass='16'/></body></worldbody></mujoco>"""
     model = mujoco.MjModel.from_xml_string(xml)
     heights = []
     for chosen in (method, "exact"):

@@ -70,7 +70,7 @@ def test_a_ball_in_the_hole_of_a_torus_is_no_cavity():
     assert "1 of its 2 pieces was inside out" in notices[0]
 
 
-def test_a_mesh_that_may_be_in_millimetres_is_told():
+def test_a_mesh_that_may_be_in_millimetres_is_reported():
     _, notices = repair(BOX.vertices * 200.0, BOX.faces, name="hull")
     assert notices == [
         "hull: it is 400 m long; if it was drawn in millimetres, set scale='0.001 0.001 0.001'"
@@ -83,23 +83,24 @@ def test_degenerate_and_repeated_triangles_go():
     assert len(mesh.faces) == 12
 
 
-def test_a_small_hole_is_closed_and_its_doubt_told():
+def test_a_small_hole_is_closed_and_its_doubt_reported():
     mesh, notices = repair(SPHERE.vertices, SPHERE.faces[3:], name="float")
     assert mesh.volume == pytest.approx(SPHERE.volume, rel=1e-3)
     assert notices == [
-        "float: 1 hole(s) with 9 edges put 0.000212 m^3 (0.01% of its volume) in doubt; they were closed"
+        "float: 1 hole(s) with 9 edges put 0.000212 m^3 (0.01% of its volume) in doubt; "
+        "they were closed"
     ]
 
 
 def test_an_open_box_is_refused_with_the_volume_in_doubt():
     with pytest.raises(
         MeshError,
-        match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, take its",
+        match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, take",
     ):
         repair(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
 
 
-def test_pieces_that_overlap_are_joined_and_the_volume_told():
+def test_pieces_that_overlap_are_joined_and_the_volume_reported():
     other = BOX.transformed(np.eye(3), (0.5, 0.0, 0.0))
     mesh, notices = repair(
         np.vstack([BOX.vertices, other.vertices]),
@@ -118,7 +119,8 @@ def test_a_mesh_that_crosses_itself_is_refused():
     ball[ball[:, 2] > 0.7, 2] -= 2.5
     with pytest.raises(
         MeshError,
-        match=r"ring: it crosses itself: about .* is enclosed twice and .* inside out, .*--hull convex",
+        match=r"ring: it crosses itself: about .* is enclosed twice and .* inside out, "
+        r".*--hull convex",
     ):
         repair(ball, SPHERE.faces, name="ring")
 

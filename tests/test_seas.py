@@ -1,4 +1,4 @@
-"""Irregular seas: their spectra, the statistics of long realisations, what the seed fixes, and what theory asks of water."""
+"""Irregular seas: their spectra, the statistics of long realisations, seeds, and theory."""
 
 import math
 
@@ -49,13 +49,15 @@ def elevations(sea, times=HOUR, x=0.0):
 
 
 def test_the_spectrum_is_the_published_one():
-    # Pierson and Moskowitz 1964 as in DNV-RP-C205, 3.5.5: 5/16 Hs^2 omega_p^4 omega^-5 exp(-5/4 (omega / omega_p)^-4)
+    # Pierson and Moskowitz 1964 as in DNV-RP-C205, 3.5.5:
+    # 5/16 Hs^2 omega_p^4 omega^-5 exp(-5/4 (omega / omega_p)^-4)
     sea, peak = JonswapSea(2.0, 8.0, gamma=1.0), 2 * math.pi / 8.0
     for omega in (0.7 * peak, peak, 1.5 * peak, 3.0 * peak):
         expected = 5 / 16 * 4.0 * peak**4 * omega**-5 * math.exp(-1.25 * (omega / peak) ** -4)
         # what the cutoff takes is spread over the rest
         assert float(sea.spectrum(omega)) == pytest.approx(expected, rel=2e-4)
-    # there too: JONSWAP is that times 1 - 0.287 ln gamma and times gamma^exp(...), at the peak gamma; good to 1 %
+    # there too: JONSWAP is that times 1 - 0.287 ln gamma and times gamma^exp(...), at the peak
+    # gamma; good to 1 %
     factor = float(JonswapSea(2.0, 8.0).spectrum(peak) / sea.spectrum(peak))
     assert factor == pytest.approx(3.3 * (1.0 - 0.287 * math.log(3.3)), rel=0.01)
 
@@ -85,7 +87,7 @@ def test_height_is_four_standard_deviations_and_the_waves_have_the_spectrums_mom
 
 
 def test_a_fully_developed_sea_has_its_period_from_its_height():
-    # Pierson and Moskowitz 1964: Hs = 0.21 U^2 / g, omega_p = 0.877 g / U, with U the wind at 19.5 m
+    # Pierson and Moskowitz 1964: Hs = 0.21 U^2 / g, omega_p = 0.877 g / U, U the wind at 19.5 m
     wind = 10.0
     sea = PiersonMoskowitzSea(0.21 * wind**2 / 9.81)
     assert 2 * math.pi / sea.peak_period == pytest.approx(0.877 * 9.81 / wind, rel=0.01)
@@ -116,13 +118,15 @@ def test_an_hour_has_the_height_the_peak_and_the_crossings_of_its_spectrum(sea):
 
 @pytest.mark.parametrize("sea", SEAS)
 def test_the_spectrum_of_long_realisations_peaks_at_the_peak_period(sea):
-    # what an estimate sees of the peak, the estimate of the true spectrum sees too: compare centres of the highest parts
+    # an estimate blurs the peak, of the true spectrum too: compare centres of the highest parts
     spectrum = sea if isinstance(sea, JonswapSea) else sea.as_jonswap
     times = np.arange(0.0, 8 * 3600.0, 0.25)
     frequencies, density = welch(elevations(sea, times), 4.0, nperseg=int(4 * 16 * sea.peak_period))
-    told = spectrum.spectrum(np.maximum(2 * math.pi * frequencies, 1e-6))
+    exact = spectrum.spectrum(np.maximum(2 * math.pi * frequencies, 1e-6))
     near = np.abs(frequencies * sea.peak_period - 1.0) < 0.3
-    found, expected = (np.average(frequencies[near], weights=d[near] ** 4) for d in (density, told))
+    found, expected = (
+        np.average(frequencies[near], weights=d[near] ** 4) for d in (density, exact)
+    )
     assert found == pytest.approx(expected, rel=0.03)
     assert expected == pytest.approx(1.0 / sea.peak_period, rel=0.05)
 
@@ -148,7 +152,8 @@ def test_crests_are_distributed_as_of_a_gaussian_sea():
 
 
 def test_the_seed_makes_the_sea_the_same_everywhere():
-    # the Mersenne Twister's first numbers for seed 0, 0.8444218515250481 and 0.7579544029403025, are part of Python's tests
+    # the Mersenne Twister's first numbers for seed 0, 0.8444218515250481 and 0.7579544029403025,
+    # are part of Python's tests
     rows = JonswapSea(1.0, 5.0, seed=0).rows
     assert rows[:2, 4] == pytest.approx(
         [2 * math.pi * 0.8444218515250481, 2 * math.pi * 0.7579544029403025], rel=1e-15
@@ -355,7 +360,7 @@ def test_seas_stand_in_scenes_and_in_models():
         (lambda: PiersonMoskowitzSea(0.0), "significant_height is 0.0; it must be above 0"),
     ],
 )
-def test_impossible_seas_are_told(make, message):
+def test_impossible_seas_are_refused(make, message):
     with pytest.raises(WaterError, match=message):
         make()
 
@@ -374,7 +379,7 @@ def test_impossible_seas_are_told(make, message):
         ),
     ],
 )
-def test_seas_that_break_are_told_with_the_number(wave, message):
+def test_seas_that_break_are_reported_with_the_number(wave, message):
     water = Water(waves=wave)
     model = vessels.box()
     if isinstance(wave, RegularWave) and wave.depth == 3.0:
@@ -386,7 +391,7 @@ def test_seas_that_break_are_told_with_the_number(wave, message):
         Buoyancy(model, water)
 
 
-def test_water_shallower_than_the_hull_is_told():
+def test_water_shallower_than_the_hull_is_refused():
     water = Water(waves=RegularWave(0.02, period=2.0, depth=0.1))
     with pytest.raises(
         ModelError, match=r"water 0\.1 m deep, and body 'hull' has a draft of at least 0\.158 m"

@@ -11,8 +11,8 @@ from buoyancy_mj import MeshError, RegularWave, TriMesh, Water, submerge
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.submersion import exact
-from buoyancy_mj.submersion import submerge as submersion
 from buoyancy_mj.submersion.hull_set import HullSet
+from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
 from tests import naive
 from tests.naive import trimesh_hull
 
@@ -37,7 +37,7 @@ def turned(seed):
     return Rotation.random(random_state=seed).as_matrix()
 
 
-# closed forms ---------------------------------------------------------------------------------------
+# closed forms
 
 
 @pytest.mark.parametrize(
@@ -176,7 +176,7 @@ def test_an_hourglass_of_two_cones_has_its_volume_through_the_neck(draft, volume
     assert submerge(mesh, (0.0, 0.0, 1.0 - draft)).volume == pytest.approx(volume, abs=1e-7)
 
 
-# an independent slice, and invariances --------------------------------------------------------------
+# an independent slice, and invariances
 
 
 @pytest.mark.parametrize("name", ODD)
@@ -273,7 +273,7 @@ def test_the_waterplane_area_is_how_volume_grows_with_draft():
     )
 
 
-# waves ----------------------------------------------------------------------------------------------
+# waves
 
 
 def test_a_flat_wave_is_still_water():
@@ -350,7 +350,7 @@ def test_the_short_cut_for_dry_and_wet_hulls_never_shows(seed):
         assert 0.0 <= wet.volume <= mesh.volume
 
 
-# borders --------------------------------------------------------------------------------------------
+# borders
 
 
 def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
@@ -373,14 +373,14 @@ def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
         ((0.0, 0.0, 0.0), np.eye(2), "it must be a rotation matrix"),
     ],
 )
-def test_a_pose_that_is_none_is_told(position, rotation, message):
+def test_a_pose_that_is_none_is_refused(position, rotation, message):
     with pytest.raises(MeshError, match=message):
         submerge(TORUS, position, rotation)
 
 
 def test_the_wetted_surface_has_the_wetted_area_and_its_waterline_lies_on_the_water():
     water, turn = Water(level=0.3), turned(7)
-    triangles, line = submersion.wetted_surface(TORUS, np.array([1.0, 2.0, 0.3]), turn, water, 0.0)
+    triangles, line = cut_wetted_surface(TORUS, np.array([1.0, 2.0, 0.3]), turn, water, 0.0)
     a, b, c = triangles.swapaxes(0, 1)
     areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
     assert areas.sum() == pytest.approx(

@@ -160,7 +160,8 @@ def test_depth_is_positive_in_the_water():
         (lambda: Water(density="salt"), "density is 'salt'; it must be a finite number"),
         (
             lambda: Water(waves=(3,)),
-            "3 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and LevelOscillation",
+            "3 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and "
+            "LevelOscillation",
         ),
         (
             lambda: Water(current=(1.0, 2.0)),
@@ -179,7 +180,8 @@ def test_depth_is_positive_in_the_water():
         ),
         (
             lambda: Water(waves=5),
-            "5 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and LevelOscillation",
+            "5 is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and "
+            "LevelOscillation",
         ),
         (lambda: Water(current="abc"), "current is 'abc'; it must be three finite numbers"),
         (lambda: Water(level=1e308), r"level is 1e\+308; it must be at most 1e\+06"),
@@ -190,11 +192,11 @@ def test_depth_is_positive_in_the_water():
         (lambda: LevelOscillation(0.1, 0.0), "frequency is 0.0; it must be at least 1e-06"),
     ],
 )
-def test_impossible_water_is_told(make, message):
+def test_impossible_water_is_refused(make, message):
     with pytest.raises(WaterError, match=message):
         make()
 
 
-def test_a_sea_of_absurdly_many_waves_is_told():
+def test_a_sea_of_absurdly_many_waves_is_refused():
     with pytest.raises(WaterError, match="the sea has 10001 waves; it may have 10000 at most"):
         Water(waves=[LevelOscillation(0.0, 1.0)] * 10_001)

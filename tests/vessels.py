@@ -18,7 +18,8 @@ DATA = Path(__file__).parent / "data"
 def of_geoms(geoms, inertial="", options='gravity="0 0 -9.81"'):
     """A free body with geoms, in MJCF."""
     return mujoco.MjModel.from_xml_string(
-        f'<mujoco><option {options}/><worldbody><body name="hull"><freejoint/>{inertial}{geoms}</body></worldbody></mujoco>'
+        f"""<mujoco><option {options}/><worldbody>
+        <body name="hull"><freejoint/>{inertial}{geoms}</body></worldbody></mujoco>"""
     )
 
 
@@ -56,7 +57,10 @@ def dented(seed, size=1.0):
 
 
 def wigley(length=2.5, beam=0.25, draft=0.15625, freeboard=0.1, stations=200, waterlines=100):
-    """Wigley's parabolic hull y = (B / 2) (1 - (2 x / L)^2) (1 - (z / T)^2), with straight sides above z = 0."""
+    """Wigley's parabolic hull y = (B / 2) (1 - (2 x / L)^2) (1 - (z / T)^2).
+
+    Above z = 0 its sides are straight.
+    """
     x = np.linspace(-1.0, 1.0, stations + 1)
     z = np.append(np.linspace(-1.0, 0.0, waterlines + 1), freeboard / draft)
     half = 0.5 * beam * (1.0 - x[:, None] ** 2) * (1.0 - np.minimum(z, 0.0) ** 2)
@@ -77,7 +81,10 @@ def wigley(length=2.5, beam=0.25, draft=0.15625, freeboard=0.1, stations=200, wa
 
 
 def tanker(freeboard=5.0):
-    """The tanker of the MSS toolbox, with straight sides above the water and a deck: vertices and faces, not closed."""
+    """Vertices and faces of the tanker of the MSS toolbox, which are not closed.
+
+    It has straight sides above the water, and a deck.
+    """
     lines = (
         gzip.decompress((DATA / "mss_tanker" / "tanker.gdf.gz").read_bytes()).decode().splitlines()
     )

@@ -117,7 +117,8 @@ class TriMesh:
     @property
     def extents(self) -> NDArray[np.float64]:
         """Sides of the axis-aligned bounding box (3,) [m]."""
-        return np.ptp(self.vertices, axis=0)
+        sides: NDArray[np.float64] = np.ptp(self.vertices, axis=0)
+        return sides
 
     @cached_property
     def compact(self) -> Surface:

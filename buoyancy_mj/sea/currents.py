@@ -1,4 +1,4 @@
-"""Currents: the velocity of the water without its waves; everywhere the same, by depth, or by time."""
+"""Currents: the velocity of the water without its waves; uniform, by depth, or by time."""
 
 import dataclasses
 import math
@@ -10,105 +10,119 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.errors import WaterError
 
 Velocity = tuple[float, float, float]
-"""[m/s], world frame."""
+"""A velocity (3,) [m/s], world frame."""
+BY_DEPTH = 0.0
+"""Mark of rows whose first column is a depth, see `kernels.currents`."""
+BY_TIME = 1.0
+"""Mark of rows whose first column is a time, see `kernels.currents`."""
 
 
 @dataclasses.dataclass(frozen=True)
 class CurrentProfile:
-    """A current that depends on depth: straight between the depths given, and held above the first and below the last.
+    """A current that depends on depth.
+
+    It is linear between the depths, and constant above the first and below the last.
 
     Raises:
-        WaterError: depths that do not grow, not as many velocities, or one that is no finite number.
+        WaterError: depths that do not grow, another number of velocities than of depths, or a value
+            that is not finite.
+
+    Example:
+        >>> water = Water(current=CurrentProfile((0.0, 10.0), ((0.8, 0.0, 0.0), (0.2, 0.0, 0.0))))
+        >>> float(water.velocity([0.0, 0.0, -5.0], time=0.0)[0])
+        0.5
     """
 
     depths: tuple[float, ...]
-    """Under the still level [m], growing (n,)."""
+    """Depths under the still level (n,) [m], growing."""
     velocities: tuple[Velocity, ...]
-    """There (n, 3) [m/s], world frame."""
+    """Velocities at these depths (n, 3) [m/s], world frame."""
 
     def __post_init__(self) -> None:
-        depths, velocities = _columns("depths", self.depths, self.velocities)
+        depths, velocities = _check_table("depths", self.depths, self.velocities)
         object.__setattr__(self, "depths", depths)
         object.__setattr__(self, "velocities", velocities)
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """As compiled code reads it (n, 5), see `kernels.currents`."""
-        return np.column_stack([self.depths, self.velocities, np.zeros(len(self.depths))])
+        """The current as compiled code reads it (n, 5), see `kernels.currents`."""
+        return np.column_stack([self.depths, self.velocities, np.full(len(self.depths), BY_DEPTH)])
 
 
 @dataclasses.dataclass(frozen=True)
 class CurrentSeries:
-    """A current that depends on time: straight between the times given, and held before the first and after the last.
+    """A current that depends on time.
 
-    Bodies with added mass feel it gather speed; the pressure gradient that drives it is left out, so
-    that it should gather speed slowly beside g, as tides do.
+    It is linear between the times, and constant before the first and after the last. Bodies with
+    added mass feel it gather speed. The pressure gradient that drives it is left out, so that it
+    should gather speed slowly beside g, as tides do.
 
     Raises:
-        WaterError: times that do not grow, not as many velocities, or one that is no finite number.
+        WaterError: times that do not grow, another number of velocities than of times, or a value
+            that is not finite.
+
+    Example:
+        >>> water = Water(current=CurrentSeries((0.0, 60.0), ((0.0, 0.0, 0.0), (0.5, 0.0, 0.0))))
+        >>> float(water.velocity([0.0, 0.0, -5.0], time=30.0)[0])
+        0.25
     """
 
     times: tuple[float, ...]
-    """[s], growing (n,)."""
+    """Times (n,) [s], growing."""
     velocities: tuple[Velocity, ...]
-    """Then (n, 3) [m/s], world frame."""
+    """Velocities at these times (n, 3) [m/s], world frame."""
 
     def __post_init__(self) -> None:
-        times, velocities = _columns("times", self.times, self.velocities)
+        times, velocities = _check_table("times", self.times, self.velocities)
         object.__setattr__(self, "times", times)
         object.__setattr__(self, "velocities", velocities)
 
     @classmethod
     def read(cls, path: str | Path) -> "CurrentSeries":
-        """A series from a file of comma-separated time [s], u, v and, if it has it, w [m/s]; a line of names may head it.
+        """Read a series from a file of comma-separated values, as in "0.0, 0.5, 0.0".
+
+        The columns are time [s], u, v and, if there is a fourth, w [m/s]. Text behind a '#' and
+        lines of words before the first numbers are skipped.
 
         Raises:
-            WaterError: it cannot be read, has other columns, or holds what is no number.
+            WaterError: the file cannot be read, has other columns, or holds what is no number.
         """
         try:
-            lines = [line.split("#")[0].strip() for line in Path(path).read_text().splitlines()]
+            lines = Path(path).read_text().splitlines()
         except (OSError, UnicodeDecodeError) as error:
             raise WaterError(f"the current in '{path}' cannot be read: {error}") from error
-        rows: list[list[float]] = []
-        for number, line in enumerate(lines, 1):
-            if not line:
-                continue
-            try:
-                values = [float(word) for word in line.split(",")]
-            except ValueError:
-                if not rows and not any(character.isdigit() for character in line):
-                    continue
-                raise WaterError(
-                    f"line {number} of '{path}' is '{line}'; needed are numbers: time, u, v, w"
-                ) from None
-            if len(values) not in (3, 4) or not all(math.isfinite(value) for value in values):
-                raise WaterError(
-                    f"line {number} of '{path}' is '{line}'; needed are 3 or 4 finite numbers: time, u, v, w"
-                )
-            rows.append([*values, 0.0][:4])
+
+        rows: list[tuple[float, Velocity]] = []
+        for number, text in enumerate(lines, 1):
+            line = text.split("#")[0].strip()
+            is_heading = not rows and not any(character.isdigit() for character in line)
+            row = _parse_row(line, f"line {number} of '{path}'", is_heading=is_heading)
+            if row is not None:
+                rows.append(row)
         if not rows:
             raise WaterError(f"'{path}' holds no current; needed are lines of time, u, v, w")
-        return cls(tuple(row[0] for row in rows), tuple((row[1], row[2], row[3]) for row in rows))
+        times, velocities = zip(*rows, strict=True)
+        return cls(times, velocities)
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """As compiled code reads it (n, 5), see `kernels.currents`."""
-        return np.column_stack([self.times, self.velocities, np.ones(len(self.times))])
+        """The current as compiled code reads it (n, 5), see `kernels.currents`."""
+        return np.column_stack([self.times, self.velocities, np.full(len(self.times), BY_TIME)])
 
 
 Current = Velocity | CurrentProfile | CurrentSeries
-"""What `Water.current` may be."""
+"""Anything that `Water.current` may be."""
 
 
 def current_rows(current: Current) -> NDArray[np.float64]:
     """Any current as compiled code reads it (n, 5), see `kernels.currents`."""
     if isinstance(current, CurrentProfile | CurrentSeries):
         return current.rows
-    return np.array([[0.0, *current, 0.0]])
+    return np.array([[0.0, *current, BY_DEPTH]])
 
 
-def uniform(current: object) -> Velocity:
-    """The velocity (3,) of a current that is everywhere the same.
+def parse_velocity(current: object) -> Velocity:
+    """Convert a uniform current to its velocity (3,) [m/s].
 
     Raises:
         WaterError: it is no such velocity.
@@ -119,34 +133,66 @@ def uniform(current: object) -> Velocity:
         velocity = np.array(np.nan)
     if velocity.shape != (3,) or not np.isfinite(velocity).all():
         raise WaterError(
-            f"current is {current!r}; it must be three finite numbers [m/s], a CurrentProfile or a CurrentSeries"
+            f"current is {current!r}; "
+            "it must be three finite numbers [m/s], a CurrentProfile or a CurrentSeries"
         )
     x, y, z = velocity.tolist()
     return x, y, z
 
 
-def _columns(
+def _parse_row(line: str, where: str, *, is_heading: bool) -> tuple[float, Velocity] | None:
+    """Time [s] and velocity (3,) [m/s] of a line; None if it is empty or a heading of words.
+
+    Raises:
+        WaterError: the line holds other than 3 or 4 finite numbers; the message calls it `where`.
+    """
+    if not line:
+        return None
+    try:
+        values = [float(word) for word in line.split(",")]
+    except ValueError:
+        if is_heading:
+            return None
+        raise WaterError(f"{where} is '{line}'; needed are numbers: time, u, v, w") from None
+    if len(values) not in (3, 4) or not all(map(math.isfinite, values)):
+        raise WaterError(f"{where} is '{line}'; needed are 3 or 4 finite numbers: time, u, v, w")
+    time, u, v, w = [*values, 0.0][:4]
+    return time, (u, v, w)
+
+
+def _check_table(
     name: str, places: ArrayLike, velocities: ArrayLike
 ) -> tuple[tuple[float, ...], tuple[Velocity, ...]]:
-    """Two columns of a table, checked."""
+    """Check the two columns of a current by depth or by time, and convert them to tuples.
+
+    Args:
+        name: what the first column holds, "depths" or "times".
+        places: the first column (n,).
+        velocities: the second column (n, 3) [m/s].
+    """
+    # as many numbers in one as in the other
     try:
         at, speeds = np.asarray(places, float), np.asarray(velocities, float)
     except (TypeError, ValueError):
         at = speeds = np.array(np.nan)
     if at.ndim != 1 or not at.size or speeds.shape != (at.size, 3):
         raise WaterError(
-            f"a current by {name} needs as many {name} as velocities of three numbers each, at least one; it has {at.size} "
-            f"{name}, and velocities of shape {speeds.shape}"
+            f"a current by {name} needs as many {name} as velocities of three numbers each, "
+            f"at least one; it has {at.size} {name}, and velocities of shape {speeds.shape}"
         )
-    for what, table in ((name, at), ("velocities", speeds)):
-        if not np.isfinite(table).all():
-            row = int(np.argwhere(~np.isfinite(table))[0][0])
+
+    # finite, and growing
+    for column, values in ((name, at), ("velocities", speeds)):
+        if not np.isfinite(values).all():
+            row = int(np.argwhere(~np.isfinite(values))[0][0])
             raise WaterError(
-                f"the {what} of the current hold {table[row]} in row {row}; they must be finite numbers"
+                f"the {column} of the current hold {values[row]} in row {row}; "
+                "they must be finite numbers"
             )
     if not (np.diff(at) > 0.0).all():
         row = int(np.argmax(~(np.diff(at) > 0.0)))
         raise WaterError(
-            f"the {name} of the current must grow from row to row; {at[row + 1]:g} follows {at[row]:g}"
+            f"the {name} of the current must grow from row to row; "
+            f"{at[row + 1]:g} follows {at[row]:g}"
         )
     return tuple(at.tolist()), tuple((x, y, z) for x, y, z in speeds.tolist())

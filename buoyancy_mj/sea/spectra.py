@@ -1,4 +1,4 @@
-"""Irregular seas: spectra of the field, as sums of Airy waves that a seed makes the same everywhere."""
+"""Irregular seas: spectra of the field as sums of Airy waves, the same everywhere for a seed."""
 
 import dataclasses
 import functools
@@ -7,216 +7,224 @@ import random
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import cumulative_trapezoid
 
 from buoyancy_mj.errors import WaterError
-from buoyancy_mj.sea.waves import GRAVITY, LARGEST, SMALLEST, finite, water_depth, wavenumber
+from buoyancy_mj.sea.distributions import jonswap_moments, jonswap_shape, spreading_angles
+from buoyancy_mj.sea.ranges import (
+    LARGEST,
+    SMALLEST,
+    check_depth,
+    check_number,
+    check_whole_number,
+)
+from buoyancy_mj.sea.waves import GRAVITY, wavenumber
 
 MOST_COMPONENTS = 10_000
-"""Waves of one sea."""
-CUTOFF = 10.0
-"""Highest frequency over that of the peak: above it lies about 1e-4 of the energy."""
+"""Most waves of one sea."""
 ALPHA = 0.0081
 """Pierson and Moskowitz's constant of fully developed seas, S = ALPHA g^2 omega^-5 exp(...)."""
-_GRID = 40_001
-"""Frequencies, or directions, at which a distribution is summed."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class _Sea:
-    """What all irregular seas have."""
+class IrregularSea:
+    """Options that all irregular seas share."""
 
     components: int = 64
-    """How many waves."""
+    """Number of waves."""
     seed: int = 0
-    """Of phases and directions."""
+    """Seed of phases and directions."""
     direction: float = 0.0
-    """Where the sea runs to, from x towards y [rad]."""
+    """Mean direction that the sea runs to, from x towards y [rad]."""
     spreading: float = math.inf
-    """Exponent s: infinite for long crests, 10 to 25 for swell, 2 to 5 for wind sea."""
+    """Exponent s of the spreading cos^2s(b / 2) over directions b.
+
+    It is infinite for long crests, 10 to 25 for swell, and 2 to 5 for a wind sea."""
     depth: float = math.inf
-    """Depth of the water [m]; it shortens the waves, and leaves the spectrum as it is."""
+    """Depth of the water [m]; it shortens the waves and leaves the spectrum as it is."""
     gravity: float = GRAVITY
-    """g in the dispersion relation [m/s^2]."""
+    """Acceleration of gravity in the dispersion relation, g [m/s^2]."""
 
 
 @dataclasses.dataclass(frozen=True)
-class JonswapSea(_Sea):
-    """A sea of the JONSWAP spectrum, and with gamma 1 of Pierson and Moskowitz's, as `components` Airy waves.
+class JonswapSea(IrregularSea):
+    """A sea of the JONSWAP spectrum as a sum of Airy waves.
 
-    S = A alpha omega^-5 exp(-5/4 (omega / omega_p)^-4) gamma^exp(-(omega / omega_p - 1)^2 / (2 sigma^2)), sigma
-    0.07 below the peak and 0.09 above (Hasselmann et al. 1973; DNV-RP-C205, 3.5.5), scaled so that its
-    area is significant_height^2 / 16.
+    S = A omega^-5 exp(-5/4 (omega / omega_p)^-4) gamma^exp(-(omega / omega_p - 1)^2 / (2 sigma^2)),
+    sigma 0.07 below the peak and 0.09 above (Hasselmann et al. 1973; DNV-RP-C205, 3.5.5), with A
+    such that the area is significant_height^2 / 16. With gamma 1 it is Pierson and Moskowitz's.
 
-    The spectrum is cut into bands of equal energy, up to `CUTOFF`. Each is one wave, at the band's
-    root mean square frequency, so that height and zero-crossing period are those of the spectrum
-    whatever the seed; no two bands are equally wide, so that the sea does not repeat. Phases are
-    drawn by the seed from the Mersenne Twister, the same on every platform. So are directions, one
-    for each wave, from equal shares of cos^2s((b - direction) / 2) (Longuet-Higgins et al. 1963).
+    The spectrum is cut into bands of equal energy, up to `distributions.CUTOFF`. Each band is one
+    wave at the band's root mean square frequency, so that height and zero-crossing period are those
+    of the spectrum whatever the seed. No two bands are equally wide, so that the sea does not
+    repeat. The seed draws the phases from the Mersenne Twister, the same on every platform. It also
+    deals out the directions, one for each wave, from equal shares of cos^2s((b - direction) / 2)
+    (Longuet-Higgins et al. 1963).
 
     Raises:
         WaterError: a value out of its range.
+
+    Example:
+        >>> sea = JonswapSea(significant_height=0.5, peak_period=3.0, spreading=10.0, seed=7)
+        >>> water = Water(waves=sea)
+        >>> sea.zero_crossing_period
+        2.34...
     """
 
     significant_height: float
-    """Hs, four times the standard deviation of the elevation [m]."""
+    """Significant wave height Hs, four times the standard deviation of the elevation [m]."""
     peak_period: float
-    """Tp, of the waves with the most energy [s]."""
+    """Period Tp of the waves with the most energy [s]."""
     gamma: float = dataclasses.field(default=3.3, kw_only=True)
-    """How much the peak stands out of Pierson and Moskowitz's; 1 to 20."""
+    """Height of the peak over that of Pierson and Moskowitz's spectrum; 1 to 20."""
 
     def __post_init__(self) -> None:
-        finite("significant_height", self.significant_height, least=0.0)
-        finite("peak_period", self.peak_period, least=SMALLEST, most=LARGEST)
-        finite("gamma", self.gamma, least=1.0, most=20.0)
-        finite("direction", self.direction)
-        finite("gravity", self.gravity, above=0.0)
-        water_depth(self.depth)
-        for name, least, most in (("components", 1, MOST_COMPONENTS), ("seed", 0, 2**63 - 1)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-                raise WaterError(
-                    f"{name} is {value!r}; it must be a whole number from {least} to {most}"
-                )
+        check_number("significant_height", self.significant_height, least=0.0)
+        check_number("peak_period", self.peak_period, least=SMALLEST, most=LARGEST)
+        check_number("gamma", self.gamma, least=1.0, most=20.0)
+        check_number("direction", self.direction)
+        check_number("gravity", self.gravity, above=0.0)
+        check_depth(self.depth)
+        check_whole_number("components", self.components, 1, MOST_COMPONENTS)
+        check_whole_number("seed", self.seed, 0, 2**63 - 1)
         if (
             isinstance(self.spreading, bool)
             or not isinstance(self.spreading, int | float)
             or not self.spreading > 0.0
         ):
             raise WaterError(
-                f"spreading is {self.spreading!r}; it must be an exponent above 0, or inf for long crests"
+                f"spreading is {self.spreading!r}; "
+                "it must be an exponent above 0, or inf for long crests"
             )
         if self.significant_height > self.depth:
             raise WaterError(
-                f"significant_height is {self.significant_height} m in water {self.depth} m deep; such waves break far "
-                "outside: make them lower, or the water deeper"
+                f"significant_height is {self.significant_height} m in water {self.depth} m deep; "
+                "such waves break far outside: make them lower, or the water deeper"
             )
 
     def spectrum(self, omega: ArrayLike) -> NDArray[np.float64]:
-        """Energy density S [m^2 s] at angular frequencies (any shape) [rad/s], whose integral is Hs^2 / 16."""
+        """Energy density S [m^2 s], whose integral over omega is Hs^2 / 16.
+
+        Args:
+            omega: angular frequencies (any shape) [rad/s].
+        """
         ratio = np.asarray(omega, float) * self.peak_period / (2.0 * math.pi)
-        scale = (
-            (self.significant_height / 4.0) ** 2
-            / self._moments[0]
-            * self.peak_period
-            / (2.0 * math.pi)
-        )
-        return scale * _shape(ratio, self.gamma)
+        zeroth, _ = self._moments
+        energy = (self.significant_height / 4.0) ** 2
+        scale = energy / zeroth * self.peak_period / (2.0 * math.pi)
+        return scale * jonswap_shape(ratio, self.gamma)
 
     @property
     def zero_crossing_period(self) -> float:
-        """Mean time between two crossings of the still level upwards, 2 pi sqrt(m0 / m2) [s]."""
-        return self.peak_period * math.sqrt(self._moments[0] / self._moments[1])
-
-    @functools.cached_property
-    def rows(self) -> NDArray[np.float64]:
-        """The waves as rows (components, 6), see `Wave`."""
-        n = self.components
-        stream = random.Random(self.seed)
-        phases = [2.0 * math.pi * stream.random() for _ in range(n)]
-        ratio, energy, second = _summed(self.gamma)
-        edges = np.interp(np.arange(n + 1) * energy[-1] / n, energy, ratio)
-        omegas = (
-            np.sqrt(np.diff(np.interp(edges, ratio, second)) / (energy[-1] / n))
-            * 2.0
-            * math.pi
-            / self.peak_period
-        )
-        directions = np.full(n, self.direction)
-        if math.isfinite(self.spreading):
-            shares = [(i + 0.5) / n for i in range(n)]
-            stream.shuffle(shares)
-            directions = directions + _angles(self.spreading, np.array(shares))
-        k = np.array([wavenumber(omega, self.depth, self.gravity) for omega in omegas])
-        rows = np.empty((n, 6))
-        rows[:, 0] = self.significant_height / 4.0 * math.sqrt(2.0 / n)
-        rows[:, 1], rows[:, 2] = k * np.cos(directions), k * np.sin(directions)
-        rows[:, 3], rows[:, 4], rows[:, 5] = omegas, phases, self.depth
-        return rows
-
-    @property
-    def warning(self) -> str:
-        """What speaks against such a sea in nature, a clause; empty if nothing does.
-
-        Its mean steepness 2 pi Hs / (g Tp^2) stays below 1/15 up to a Tp of 8 s, and below 1/25 from 15 s up,
-        with straight lines between (DNV-RP-C205, 3.5.4).
-        """
-        steepest = float(np.interp(self.peak_period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
-        most = steepest * self.gravity * self.peak_period**2 / (2.0 * math.pi)
-        if self.significant_height <= most:
-            return ""
-        return (
-            f"a sea {self.significant_height:.3g} m high at {self.peak_period:.3g} s, {self.significant_height / most:.2f} "
-            f"times as steep as seas get before their waves break; make it at most {most:.3g} m high"
-        )
+        """Mean time between two upward crossings of the still level, 2 pi sqrt(m0 / m2) [s]."""
+        zeroth, second = self._moments
+        return self.peak_period * math.sqrt(zeroth / second)
 
     @property
     def _moments(self) -> tuple[float, float]:
-        """Zeroth and second moment of the shape over omega / omega_p."""
-        _, energy, second = _summed(self.gamma)
-        return float(energy[-1]), float(second[-1])
+        """Zeroth and second moment of the spectrum's shape over omega / omega_p."""
+        _, zeroth, second = jonswap_moments(self.gamma)
+        return float(zeroth[-1]), float(second[-1])
+
+    @functools.cached_property
+    def rows(self) -> NDArray[np.float64]:
+        """The waves as rows (components, 6), see `Wave.rows`."""
+        n = self.components
+        stream = random.Random(self.seed)
+        phases = [2.0 * math.pi * stream.random() for _ in range(n)]
+        omegas = self._frequencies()
+        directions = self._directions(stream)
+        k = np.array([wavenumber(omega, self.depth, self.gravity) for omega in omegas])
+        amplitude = self.significant_height / 4.0 * math.sqrt(2.0 / n)
+        return np.column_stack(
+            [
+                np.full(n, amplitude),
+                k * np.cos(directions),
+                k * np.sin(directions),
+                omegas,
+                phases,
+                np.full(n, self.depth),
+            ]
+        )
+
+    def _frequencies(self) -> NDArray[np.float64]:
+        """Root mean square frequency of each band of equal energy (components,) [rad/s]."""
+        n = self.components
+        ratio, zeroth, second = jonswap_moments(self.gamma)
+        edges = np.interp(np.arange(n + 1) * zeroth[-1] / n, zeroth, ratio)
+        squares = np.diff(np.interp(edges, ratio, second)) / (zeroth[-1] / n)
+        omegas: NDArray[np.float64] = np.sqrt(squares) * 2.0 * math.pi / self.peak_period
+        return omegas
+
+    def _directions(self, stream: random.Random) -> NDArray[np.float64]:
+        """Direction of each wave (components,) [rad], dealt out by a stream of random numbers."""
+        n = self.components
+        directions = np.full(n, self.direction)
+        if math.isinf(self.spreading):
+            return directions
+        shares = [(i + 0.5) / n for i in range(n)]
+        stream.shuffle(shares)
+        return directions + spreading_angles(self.spreading, np.array(shares))
+
+    @property
+    def warning(self) -> str:
+        """A clause that says how much too steep the sea is for nature; empty if it is not.
+
+        The mean steepness 2 pi Hs / (g Tp^2) stays below 1/15 up to a Tp of 8 s, and below 1/25
+        from 15 s up, with straight lines between (DNV-RP-C205, 3.5.4).
+        """
+        steepest = float(np.interp(self.peak_period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
+        limit = steepest * self.gravity * self.peak_period**2 / (2.0 * math.pi)
+        if self.significant_height <= limit:
+            return ""
+        return (
+            f"a sea {self.significant_height:.3g} m high at {self.peak_period:.3g} s, "
+            f"{self.significant_height / limit:.2f} times as steep as seas get before their waves "
+            f"break; make it at most {limit:.3g} m high"
+        )
 
 
 @dataclasses.dataclass(frozen=True)
-class PiersonMoskowitzSea(_Sea):
+class PiersonMoskowitzSea(IrregularSea):
     """A wind sea of the spectrum of Pierson and Moskowitz (1964): `JonswapSea` with gamma 1.
 
-    Without a peak period it is fully developed, alpha = 0.0081: omega_p = (16 alpha g^2 / (5 Hs^2))^(1/4).
+    Without a peak period it is fully developed, with alpha = 0.0081:
+    omega_p = (16 alpha g^2 / (5 Hs^2))^(1/4).
 
     Raises:
         WaterError: a value out of its range.
+
+    Example:
+        >>> PiersonMoskowitzSea(significant_height=2.0).peak_period
+        7.07...
     """
 
     significant_height: float
-    """Hs, four times the standard deviation of the elevation [m]."""
+    """Significant wave height Hs, four times the standard deviation of the elevation [m]."""
     peak_period: float = math.nan
-    """Tp, of the waves with the most energy [s]; follows from the height if not given."""
+    """Period Tp of the waves with the most energy [s]; by default it follows from the height."""
 
     def __post_init__(self) -> None:
         if isinstance(self.peak_period, float) and math.isnan(self.peak_period):
-            finite("significant_height", self.significant_height, above=0.0)
-            finite("gravity", self.gravity, above=0.0)
+            check_number("significant_height", self.significant_height, above=0.0)
+            check_number("gravity", self.gravity, above=0.0)
             omega = (16.0 * ALPHA * self.gravity**2 / (5.0 * self.significant_height**2)) ** 0.25
             object.__setattr__(self, "peak_period", 2.0 * math.pi / omega)
+
+        # this checks all the rest
         _ = self.as_jonswap
 
     @functools.cached_property
     def as_jonswap(self) -> JonswapSea:
         """The same sea under its more general name."""
-        return JonswapSea(
-            **{f.name: getattr(self, f.name) for f in dataclasses.fields(self)}, gamma=1.0
-        )
+        options = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        return JonswapSea(**options, gamma=1.0)
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """The waves as rows (components, 6), see `Wave`."""
+        """The waves as rows (components, 6), see `Wave.rows`."""
         return self.as_jonswap.rows
 
     @property
     def warning(self) -> str:
-        """What speaks against such a sea in nature, see `JonswapSea.warning`."""
+        """A clause that says how much too steep the sea is, see `JonswapSea.warning`."""
         return self.as_jonswap.warning
-
-
-def _shape(ratio: NDArray[np.float64], gamma: float) -> NDArray[np.float64]:
-    """The spectrum over omega / omega_p, but for its scale."""
-    r = np.maximum(ratio, 1e-3)
-    bump = np.exp(-0.5 * ((r - 1.0) / np.where(r <= 1.0, 0.07, 0.09)) ** 2)
-    shape: NDArray[np.float64] = r**-5.0 * np.exp(-1.25 * r**-4.0) * gamma**bump
-    return shape
-
-
-@functools.lru_cache(maxsize=32)
-def _summed(gamma: float) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Frequencies over that of the peak, and up to each the zeroth and the second moment."""
-    ratio = np.linspace(0.2, CUTOFF, _GRID)
-    density = _shape(ratio, gamma)
-    energy = cumulative_trapezoid(density, ratio, initial=0.0)
-    return ratio, energy, cumulative_trapezoid(density * ratio**2, ratio, initial=0.0)
-
-
-def _angles(s: float, shares: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angles below which lie these shares of cos^2s(b / 2)."""
-    angle = np.linspace(-math.pi, math.pi, _GRID)
-    total = cumulative_trapezoid(np.cos(0.5 * angle) ** (2.0 * s), angle, initial=0.0)
-    return np.interp(shares * total[-1], total, angle)

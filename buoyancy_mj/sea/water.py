@@ -3,18 +3,26 @@
 import dataclasses
 import functools
 from collections.abc import Sequence
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import WaterError
 from buoyancy_mj.kernels import waves as kernels
-from buoyancy_mj.sea.currents import Current, CurrentProfile, CurrentSeries, current_rows, uniform
-from buoyancy_mj.sea.spectra import JonswapSea, PiersonMoskowitzSea
-from buoyancy_mj.sea.waves import GRAVITY, LARGEST, Wave, finite
+from buoyancy_mj.sea.currents import (
+    Current,
+    CurrentProfile,
+    CurrentSeries,
+    current_rows,
+    parse_velocity,
+)
+from buoyancy_mj.sea.ranges import LARGEST, check_number
+from buoyancy_mj.sea.spectra import IrregularSea
+from buoyancy_mj.sea.waves import GRAVITY, Wave
 
 MOST_WAVES = 10_000
-"""Waves at once: each costs its time in every step."""
+"""Most waves at once; each costs its time in every step."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -23,43 +31,56 @@ class Water:
 
     Raises:
         WaterError: a value out of its range, or a wave that is none.
+
+    Example:
+        >>> water = Water(density=1025.0, waves=RegularWave(0.3, period=4.0), current=(0.5, 0, 0))
+        >>> float(water.elevation(x=0.0, y=0.0, time=0.0))
+        0.3
     """
 
     density: float = 1000.0
     """Mass density rho [kg/m^3]; sea water has about 1025."""
     level: float = 0.0
-    """World height of the still surface [m]."""
+    """Height of the still surface [m], world frame."""
     waves: Wave | Sequence[Wave] = ()
-    """One wave or several; elevations and velocities add up."""
+    """One wave or several; their elevations and velocities add up."""
     current: Current = (0.0, 0.0, 0.0)
-    """Velocity of the water without the waves (3,) [m/s], world frame; or by depth, or by time."""
+    """Velocity of the water without its waves (3,) [m/s], world frame; or one by depth or time."""
 
     def __post_init__(self) -> None:
-        finite("density", self.density, above=0.0)
-        finite("level", self.level, least=-LARGEST, most=LARGEST)
-        waves = (
-            (self.waves,)
-            if hasattr(self.waves, "rows") or not isinstance(self.waves, Sequence)
-            else tuple(self.waves)
-        )
+        # numbers
+        check_number("density", self.density, above=0.0)
+        check_number("level", self.level, least=-LARGEST, most=LARGEST)
+
+        # waves, as a tuple
+        is_one = hasattr(self.waves, "rows") or not isinstance(self.waves, Sequence)
+        waves = (self.waves,) if is_one else tuple(cast(Sequence[Wave], self.waves))
         for wave in waves:
             if not hasattr(wave, "rows"):
                 raise WaterError(
-                    f"{wave!r} is no wave; possible are RegularWave, JonswapSea, PiersonMoskowitzSea and LevelOscillation"
+                    f"{wave!r} is no wave; possible are RegularWave, JonswapSea, "
+                    "PiersonMoskowitzSea and LevelOscillation"
                 )
-        count = sum(len(wave.rows) for wave in waves)
-        if count > MOST_WAVES:
-            raise WaterError(
-                f"the sea has {count} waves; it may have {MOST_WAVES} at most, so leave out the smallest"
-            )
         object.__setattr__(self, "waves", waves)
+        if len(self.rows) > MOST_WAVES:
+            raise WaterError(
+                f"the sea has {len(self.rows)} waves; it may have {MOST_WAVES} at most, "
+                "so leave out the smallest"
+            )
+
+        # the current
         if not isinstance(self.current, CurrentProfile | CurrentSeries):
-            object.__setattr__(self, "current", uniform(self.current))
+            object.__setattr__(self, "current", parse_velocity(self.current))
+
+    @property
+    def _waves(self) -> tuple[Wave, ...]:
+        """The waves, which are a tuple once the water exists."""
+        return cast(tuple[Wave, ...], self.waves)
 
     @functools.cached_property
     def rows(self) -> NDArray[np.float64]:
-        """All waves as rows (n, 6), see `Wave`."""
-        return np.concatenate([np.zeros((0, 6)), *(wave.rows for wave in self.waves)])  # type: ignore[union-attr]
+        """The components of all waves as rows (n, 6), see `Wave.rows`."""
+        return np.concatenate([np.zeros((0, 6)), *(wave.rows for wave in self._waves)])
 
     @functools.cached_property
     def current_rows(self) -> NDArray[np.float64]:
@@ -68,33 +89,68 @@ class Water:
 
     @functools.cached_property
     def curvature(self) -> float:
-        """Bound of the surface's curvature [1/m]: the sum of A k^2, of random seas four standard deviations."""
+        """Bound of the curvature of the surface [1/m].
+
+        It is the sum of A k^2 of all waves, but of an irregular sea no more than four standard
+        deviations.
+        """
         total = 0.0
-        for wave in self.waves:  # type: ignore[union-attr]
-            each = np.abs(wave.rows[:, 0]) * (wave.rows[:, 1] ** 2 + wave.rows[:, 2] ** 2)
-            random = isinstance(wave, JonswapSea | PiersonMoskowitzSea)
-            total += min(each.sum(), 4.0 * np.sqrt(0.5 * (each**2).sum())) if random else each.sum()
+        for wave in self._waves:
+            amplitude, kx, ky, *_ = wave.rows.T
+            each = np.abs(amplitude) * (kx**2 + ky**2)
+            bound = each.sum()
+            if isinstance(wave, IrregularSea):
+                bound = min(bound, 4.0 * np.sqrt(0.5 * (each**2).sum()))
+            total += bound
         return float(total)
 
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What speaks against its waves in nature, clauses: they are steeper than those that break."""
-        return tuple(warning for wave in self.waves if (warning := getattr(wave, "warning", "")))  # type: ignore[union-attr]
+        """A clause for each wave that would break in nature, see `RegularWave.warning`."""
+        clauses = (getattr(wave, "warning", "") for wave in self._waves)
+        return tuple(clause for clause in clauses if clause)
 
     def elevation(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Height of the surface [m], world frame, at points x, y (any shape) [m] and a time [s]."""
+        """Height of the surface (...) [m], world frame.
+
+        Args:
+            x: horizontal coordinates of points (any shape) [m], world frame.
+            y: the other horizontal coordinates (the same shape) [m].
+            time: [s].
+        """
         xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         out = np.empty(xs.size)
         kernels.elevations(self.rows, xs.ravel(), ys.ravel(), float(time), out)
-        return self.level + out.reshape(xs.shape)
+        heights: NDArray[np.float64] = self.level + out.reshape(xs.shape)
+        return heights
+
+    def slope(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
+        """Gradient (..., 2) of the elevation along x and y.
+
+        Args:
+            x: horizontal coordinates of points (any shape) [m], world frame.
+            y: the other horizontal coordinates (the same shape) [m].
+            time: [s].
+        """
+        xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        out = np.empty((xs.size, 2))
+        kernels.slopes(self.rows, xs.ravel(), ys.ravel(), float(time), out)
+        return out.reshape(*xs.shape, 2)
 
     def depth(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
-        """How deep points (..., 3) [m] are under the surface at a time [s]; positive in the water."""
+        """Depth (...) [m] of points (..., 3) [m] under the surface at a time [s].
+
+        It is positive in the water.
+        """
         p = np.asarray(points, float)
-        return self.elevation(p[..., 0], p[..., 1], time) - p[..., 2]
+        depths: NDArray[np.float64] = self.elevation(p[..., 0], p[..., 1], time) - p[..., 2]
+        return depths
 
     def velocity(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Velocity of the water (..., 3) [m/s] at points (..., 3) [m] and a time [s]: current and waves."""
+        """Velocity (..., 3) [m/s] of the water at points (..., 3) [m] and a time [s], world frame.
+
+        It is the sum of the current and of the orbital velocities of linear waves.
+        """
         p = np.asarray(points, float)
         out = np.empty((p.size // 3, 3))
         kernels.velocities(
@@ -103,7 +159,10 @@ class Water:
         return out.reshape(p.shape)
 
     def acceleration(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Rate of that velocity at one place (..., 3) [m/s^2], at points (..., 3) [m] and a time [s]."""
+        """Acceleration (..., 3) [m/s^2] of the water at points (..., 3) [m] and a time [s].
+
+        It is the rate of `velocity` at fixed places, without the convective part.
+        """
         p = np.asarray(points, float)
         out = np.empty((p.size // 3, 3))
         kernels.accelerations(
@@ -114,19 +173,17 @@ class Water:
     def pressure(
         self, points: ArrayLike, time: float, gravity: float = GRAVITY
     ) -> NDArray[np.float64]:
-        """Pressure (...) [Pa] over the air's at points (..., 3) [m] in the water: zero on its surface.
+        """Pressure (...) [Pa] in excess of the air's at points (..., 3) [m] in the water.
 
-        That of linear waves, stretched to the surface, see `kernels.waves.head`; over the surface there
-        is no water, and the numbers mean nothing.
+        It is that of linear waves, stretched to the surface, where it is zero; see
+        `kernels.waves.head`. Above the surface there is no water, and the numbers mean nothing.
+
+        Args:
+            points: places (..., 3) [m], world frame.
+            time: [s].
+            gravity: acceleration of gravity [m/s^2].
         """
         p = np.asarray(points, float)
         out = np.empty(p.size // 3)
         kernels.heads(self.rows, p.reshape(-1, 3), self.level, float(time), out)
         return self.density * gravity * out.reshape(p.shape[:-1])
-
-    def slope(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Gradient (..., 2) of the elevation at points x, y (any shape) [m] and a time [s]."""
-        xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        out = np.empty((xs.size, 2))
-        kernels.slopes(self.rows, xs.ravel(), ys.ravel(), float(time), out)
-        return out.reshape(*xs.shape, 2)

@@ -1,4 +1,4 @@
-"""Waves: the protocol that all follow, the regular one, and a level that goes up and down."""
+"""Waves: the protocol that all follow, the regular wave, and a level that goes up and down."""
 
 import dataclasses
 import math
@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from buoyancy_mj.errors import WaterError
+from buoyancy_mj.sea.ranges import LARGEST, SMALLEST, check_depth, check_number
 
-SMALLEST, LARGEST = 1e-6, 1e6
-"""Bounds of frequencies, periods, wavelengths, depths and levels, in SI units: none in nature comes near them."""
 GRAVITY = 9.81
-"""Acceleration [m/s^2] in the dispersion relation when nobody says otherwise: MuJoCo's default."""
+"""Default acceleration of gravity [m/s^2], the same as MuJoCo's."""
 STEEPEST = 0.142
-"""Height over wavelength above which regular waves break in deep water; times tanh k h in others (Miche 1944)."""
+"""Height over wavelength above which regular waves break in deep water (Miche 1944).
+
+In water of depth h the limit is this times tanh(k h)."""
 
 
 class Wave(Protocol):
@@ -23,24 +24,32 @@ class Wave(Protocol):
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """(n, 6) of amplitude [m], kx, ky [rad/m], omega [rad/s], phase [rad], water depth [m]."""
+        """Components of the wave as rows (n, 6), as `kernels.waves` reads them.
+
+        The columns are amplitude A [m], wavenumbers kx and ky [rad/m], angular frequency omega
+        [rad/s], phase [rad] and depth of the water [m].
+        """
         ...
 
 
 @dataclasses.dataclass(frozen=True)
 class RegularWave:
-    """A linear (Airy) wave, elevation A cos(k (x cos b + y sin b) - omega t + phase).
+    """A linear (Airy) wave with the elevation A cos(k (x cos b + y sin b) - omega t + phase).
 
-    Give exactly one of `frequency`, `period`, `wavelength`; the others follow from the dispersion
-    relation omega^2 = g k tanh(k h) (Newman 1977, 6.2). Real waves break where they are steeper than
-    `STEEPEST`, which this one does not; `warning` tells.
+    Exactly one of `frequency`, `period` and `wavelength` is needed. The other two follow from the
+    dispersion relation omega^2 = g k tanh(k h) (Newman 1977, 6.2). Waves in nature break where they
+    are steeper than `STEEPEST`; this one does not, but `warning` says so.
 
     Raises:
-        WaterError: none or several of the three given, or a value out of its range.
+        WaterError: none or several of the three, or a value out of its range.
+
+    Example:
+        >>> RegularWave(0.3, period=4.0).wavelength
+        24.98...
     """
 
     amplitude: float
-    """Half the crest-to-trough height [m]."""
+    """Half the height from trough to crest, A [m]."""
     frequency: float = dataclasses.field(default=math.nan, kw_only=True)
     """Cycles per second [Hz]."""
     period: float = dataclasses.field(default=math.nan, kw_only=True)
@@ -48,34 +57,48 @@ class RegularWave:
     wavelength: float = dataclasses.field(default=math.nan, kw_only=True)
     """Distance between two crests [m]."""
     direction: float = dataclasses.field(default=0.0, kw_only=True)
-    """Where the wave runs to, b, from x towards y [rad]."""
+    """Direction that the wave runs to, b, from x towards y [rad]."""
     phase: float = dataclasses.field(default=0.0, kw_only=True)
     """Phase at the origin at time 0 [rad]; 0 is a crest."""
     depth: float = dataclasses.field(default=math.inf, kw_only=True)
-    """Depth of the water h [m]."""
+    """Depth of the water, h [m]."""
     gravity: float = dataclasses.field(default=GRAVITY, kw_only=True)
-    """g in the dispersion relation [m/s^2]."""
+    """Acceleration of gravity in the dispersion relation, g [m/s^2]."""
 
     def __post_init__(self) -> None:
-        finite("amplitude", self.amplitude, least=0.0)
-        finite("direction", self.direction)
-        finite("phase", self.phase)
-        finite("gravity", self.gravity, above=0.0)
-        water_depth(self.depth)
+        # values in their ranges
+        check_number("amplitude", self.amplitude, least=0.0)
+        check_number("direction", self.direction)
+        check_number("phase", self.phase)
+        check_number("gravity", self.gravity, above=0.0)
+        check_depth(self.depth)
         if self.amplitude > self.depth:
             raise WaterError(
-                f"amplitude is {self.amplitude} m in water {self.depth} m deep; the trough would lie below the bottom"
+                f"amplitude is {self.amplitude} m in water {self.depth} m deep; "
+                "the trough would lie below the bottom"
             )
-        given = {name: getattr(self, name) for name in ("frequency", "period", "wavelength")}
-        told = {name: value for name, value in given.items() if not _is_nan(value)}
-        if len(told) != 1:
-            got = " and ".join(told) or "none"
+
+        # one of three
+        three = {name: getattr(self, name) for name in ("frequency", "period", "wavelength")}
+        known = {name: value for name, value in three.items() if not _is_default(value)}
+        if len(known) != 1:
             raise WaterError(
-                f"a regular wave got {got}; give exactly one of frequency [Hz], period [s], wavelength [m]"
+                f"a regular wave got {' and '.join(known) or 'none'}; "
+                "give exactly one of frequency [Hz], period [s], wavelength [m]"
             )
-        (name, value), *_ = told.items()
-        finite(name, value, least=SMALLEST, most=LARGEST)
+        ((name, value),) = known.items()
+        check_number(name, value, least=SMALLEST, most=LARGEST)
+
         # the other two follow
+        self._complete(name, value)
+        if not SMALLEST**2 <= self.wavelength <= LARGEST**3:
+            raise WaterError(
+                f"a wave with a {name} of {value} would be {self.wavelength:.3g} m long; "
+                f"give another {name}"
+            )
+
+    def _complete(self, name: str, value: float) -> None:
+        """Set the two of frequency, period and wavelength that follow from the third."""
         if name == "wavelength":
             k = 2.0 * math.pi / value
             frequency = math.sqrt(self.gravity * k * math.tanh(k * self.depth)) / (2.0 * math.pi)
@@ -87,105 +110,88 @@ class RegularWave:
         if name != "wavelength":
             k = wavenumber(2.0 * math.pi * frequency, self.depth, self.gravity)
             object.__setattr__(self, "wavelength", 2.0 * math.pi / k)
-        if not SMALLEST**2 <= self.wavelength <= LARGEST**3:
-            raise WaterError(
-                f"a wave with a {name} of {value} would be {self.wavelength:.3g} m long; give another {name}"
-            )
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """The wave as one row (1, 6), see `Wave`."""
+        """The wave as one row (1, 6), see `Wave.rows`."""
         k, omega = 2.0 * math.pi / self.wavelength, 2.0 * math.pi * self.frequency
         kx, ky = k * math.cos(self.direction), k * math.sin(self.direction)
         return np.array([[self.amplitude, kx, ky, omega, self.phase, self.depth]])
 
     @property
     def warning(self) -> str:
-        """What speaks against such a wave in nature, a clause; empty if nothing does."""
-        most = STEEPEST * self.wavelength * math.tanh(2.0 * math.pi / self.wavelength * self.depth)
-        if 2.0 * self.amplitude <= most:
+        """A clause that says how much too steep the wave is for nature; empty if it is not."""
+        height = 2.0 * self.amplitude
+        limit = STEEPEST * self.wavelength * math.tanh(2.0 * math.pi / self.wavelength * self.depth)
+        if height <= limit:
             return ""
         return (
-            f"a wave {2.0 * self.amplitude:.3g} m high and {self.wavelength:.3g} m long, {2.0 * self.amplitude / most:.2f} "
-            f"times as steep as one that breaks; make it at most {most:.3g} m high"
+            f"a wave {height:.3g} m high and {self.wavelength:.3g} m long, {height / limit:.2f} "
+            f"times as steep as one that breaks; make it at most {limit:.3g} m high"
         )
 
 
 @dataclasses.dataclass(frozen=True)
 class LevelOscillation:
-    """The whole level going up and down, A cos(omega t - phase): an infinitely long wave.
+    """The whole level goes up and down, A cos(omega t - phase): an infinitely long wave.
 
     It is the moving plane of Mahbub and Shaharear (2025), "water height fluctuating between -0.3 m
     and 0.3 m at 0.5 Hz". The water moves with its level, all of it vertically.
 
     Raises:
         WaterError: a value out of its range.
+
+    Example:
+        >>> water = Water(waves=LevelOscillation(amplitude=0.3, frequency=0.5))
+        >>> float(water.elevation(x=0.0, y=0.0, time=1.0))
+        -0.3
     """
 
     amplitude: float
-    """Half the distance between highest and lowest level [m]."""
+    """Half the distance between the highest and the lowest level, A [m]."""
     frequency: float
     """Cycles per second [Hz]."""
     phase: float = 0.0
     """Phase at time 0 [rad]; 0 starts at the highest level, pi/2 at the mean one, going up."""
 
     def __post_init__(self) -> None:
-        finite("amplitude", self.amplitude, least=0.0)
-        finite("frequency", self.frequency, least=SMALLEST, most=LARGEST)
-        finite("phase", self.phase)
+        check_number("amplitude", self.amplitude, least=0.0)
+        check_number("frequency", self.frequency, least=SMALLEST, most=LARGEST)
+        check_number("phase", self.phase)
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """The oscillation as one row (1, 6), see `Wave`."""
-        return np.array(
-            [[self.amplitude, 0.0, 0.0, 2.0 * math.pi * self.frequency, self.phase, math.inf]]
-        )
+        """The oscillation as one row (1, 6), see `Wave.rows`."""
+        omega = 2.0 * math.pi * self.frequency
+        return np.array([[self.amplitude, 0.0, 0.0, omega, self.phase, math.inf]])
 
 
 def wavenumber(omega: float, depth: float = math.inf, gravity: float = GRAVITY) -> float:
-    """Wavenumber k [rad/m] with omega^2 = g k tanh(k h), for omega [rad/s], depth h [m], g [m/s^2]."""
+    """Wavenumber k [rad/m] that solves the dispersion relation omega^2 = g k tanh(k h).
+
+    Args:
+        omega: angular frequency [rad/s].
+        depth: depth of the water, h [m].
+        gravity: acceleration of gravity, g [m/s^2].
+
+    Example:
+        >>> wavenumber(0.785, depth=10.0)
+        0.0885...
+    """
+    # tanh is 1 to round-off
     deep = omega**2 / gravity
     if math.isinf(depth) or deep * depth > 20.0:
         return deep
+
     # k h lies above both its deep value and its shallow one, sqrt(deep h), and below their sum
-    low, high = max(deep * depth, math.sqrt(deep * depth)), deep * depth + math.sqrt(deep * depth)
+    shallow = math.sqrt(deep * depth)
+    low, high = max(deep * depth, shallow), deep * depth + shallow
     kh = brentq(
         lambda q: q * math.tanh(q) - deep * depth, low * 0.999, high, xtol=1e-15, rtol=1e-14
     )
     return float(kh) / depth
 
 
-def water_depth(value: object) -> None:
-    """Refuse what is no depth of water."""
-    if isinstance(value, bool) or not isinstance(value, int | float) or not value >= SMALLEST:
-        raise WaterError(
-            f"wave depth is {value!r}; it must be at least {SMALLEST:g} m (inf is deep water)"
-        )
-
-
-def _is_nan(value: object) -> bool:
+def _is_default(value: object) -> bool:
     """Whether a field was left at its default."""
     return isinstance(value, float) and math.isnan(value)
-
-
-def finite(
-    name: str,
-    value: object,
-    *,
-    above: float = -math.inf,
-    least: float = -math.inf,
-    most: float = math.inf,
-) -> None:
-    """Refuse what is not a finite number in range."""
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, int | float | np.number)
-        or not math.isfinite(value)
-    ):
-        raise WaterError(f"{name} is {value!r}; it must be a finite number")
-    if not value > above:
-        raise WaterError(f"{name} is {value}; it must be above {above:g}")
-    if not value >= least:
-        raise WaterError(f"{name} is {value}; it must be at least {least:g}")
-    if not value <= most:
-        raise WaterError(f"{name} is {value}; it must be at most {most:g}")

@@ -107,7 +107,7 @@ class _Run:
 
 
 class PackedConvexHulls:
-    """Hulls of which the wet vertices' convex hull is taken; see `methods.Packed`."""
+    """Hulls whose submersion is the convex hull of their wet vertices; see `methods.Packed`."""
 
     def __init__(self, method: ConvexHull, hulls: HullSet, water: Water) -> None:
         self.method = method
@@ -117,15 +117,21 @@ class PackedConvexHulls:
         """Volume that each hull displaces when it is under water (h,) [m^3]."""
         self.results = np.zeros((len(hulls.meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
+
+        # vertices, and edges where they are cut
         meshes = [mesh.compact for mesh in hulls.meshes]
         self._vertices = [vertices for vertices, _ in meshes]
         self._edges = []
         if method.cut:
             self._edges = [np.unique(np.sort(faces_to_edges(faces)), axis=0) for _, faces in meshes]
+
+        # every vertex in turn, the length of the hulls, and room for the vertices of one
         self._all = [np.arange(len(vertices)) for vertices in self._vertices]
         self._length = max(float(np.ptp(vertices, axis=0).max()) for vertices in self._vertices)
-        self._runs: OrderedDict[int, _Run] = OrderedDict()
         self._points = np.empty((max(len(vertices) for vertices in self._vertices), 4))
+
+        # memory of runs and of work
+        self._runs: OrderedDict[int, _Run] = OrderedDict()
         self._counts = dict.fromkeys(
             ("calls", "vertices", "vertex_checks", "sorts", "hulls", "hull_points"), 0
         )

@@ -1,6 +1,7 @@
-"""`Exact`: the submersion of the meshes themselves, cut where the surface cuts them."""
+"""`Exact`: the default method, the meshes themselves, cut where the surface cuts them."""
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from weakref import WeakKeyDictionary
@@ -21,13 +22,13 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.hull_set import HullSet
 
 MOST_TRIANGLES = 200_000
-"""Size to which a mesh may be refined for the waves."""
+"""Most triangles to which a mesh is refined for the waves."""
 _TREES: WeakKeyDictionary[TriMesh, dict[float, Tree]] = WeakKeyDictionary()
 
 
 @dataclasses.dataclass(frozen=True)
 class Exact:
-    """The volume and centroid of what is under the surface, exact on the mesh: the default everywhere.
+    """The volume and centroid under the surface, exact on the mesh: the default everywhere.
 
     Raises:
         MethodError: a tolerance that is not positive.
@@ -35,10 +36,10 @@ class Exact:
 
     name: ClassVar[str] = "exact"
     tolerance: float = 2e-3
-    """In waves, the part of a body's volume that straight cuts of its triangles may miss at worst, see `longest_edge`.
+    """Part of the volume by which straight cuts of triangles may be off in waves, at worst.
 
-    That is where a side lies flat in the surface. Elsewhere they miss of second order, a hundredth
-    of that and less; and on still water nothing."""
+    The worst case is a side that lies flat in the surface, see `longest_edge`. Elsewhere the error
+    is of second order, a hundredth of that and less, and on still water there is none."""
 
     def __post_init__(self) -> None:
         if (
@@ -47,7 +48,8 @@ class Exact:
             or not 0.0 < self.tolerance <= 1.0
         ):
             raise MethodError(
-                f"tolerance is {self.tolerance!r}; it must be a part of the volume, above 0 and at most 1"
+                f"tolerance is {self.tolerance!r}; "
+                "it must be a part of the volume, above 0 and at most 1"
             )
 
     def pack(self, hulls: HullSet, water: Water) -> "PackedHulls":
@@ -58,8 +60,8 @@ class Exact:
 class PackedHulls:
     """Hulls in one set of arrays, ready to be submerged together without allocating.
 
-    On still water the results are exact on the mesh. In waves they are but for what straight cuts
-    miss, see `Exact.tolerance`.
+    On still water the results are exact on the mesh. In waves they are so but for the error of
+    straight cuts, see `Exact.tolerance`.
     """
 
     def __init__(self, hulls: HullSet, water: Water, tolerance: float = Exact.tolerance) -> None:
@@ -85,11 +87,11 @@ class PackedHulls:
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
         """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
-        """Last submersion (h, 6): volume, centroid, wetted area, waterplane area; see `methods.Packed`."""
+        """Last submersion of each hull (h, 6), see `methods.Packed.results`."""
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """Work done so far: not counted here."""
+        """Nothing: the work is not counted here."""
         return {}
 
     def submerge(
@@ -132,7 +134,11 @@ class PackedHulls:
         rotations: NDArray[np.float64],
         about: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Waterplanes of all hulls on the still level about a point (h, 10), see `kernels.waterplane.waterplanes`."""
+        """Waterplanes of all hulls on the still level about a point (3,) [m].
+
+        Returns:
+            Rows (h, 10), see `kernels.waterplane.waterplanes`.
+        """
         rows = np.empty((len(self.volumes), waterplane.COLUMNS))
         waterplane.waterplanes(
             self.hulls,
@@ -200,7 +206,7 @@ def _whole(mesh: TriMesh, fill: float, water: Water) -> list[float]:
 
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:
-    """The tree of a mesh with edges no longer than `edge`; once for as long as the mesh lives."""
+    """The tree of a mesh with edges no longer than `edge` [m], built once while the mesh lives."""
     trees = _TREES.setdefault(mesh, {})
     if edge not in trees:
         trees[edge] = build_tree(*refine(mesh.vertices, mesh.faces, edge))
@@ -208,16 +214,22 @@ def _tree(mesh: TriMesh, edge: float) -> Tree:
 
 
 def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> float:
-    """Longest edge [m] of triangles that follow the waves well enough, for hulls of a volume and an area.
+    """Longest edge [m] of triangles that follow the waves well enough.
 
     A chord of length e under a curve of curvature c is off by c e^2 / 12 on average. That matters
-    where the surface cuts triangles alone: no more than half the hull's surface faces up or down
-    (Cauchy's mean projected area), so if all of that lay in the water's surface the volume would be
-    off by less than c e^2 / 12 times half the hull's, which must stay below the tolerance of it. No
-    hull is driven beyond about `MOST_TRIANGLES`.
+    only where the surface cuts triangles. No more than half the hull's area faces up or down
+    (Cauchy's mean projected area). If all of that lay in the water's surface, the volume would be
+    off by less than c e^2 / 12 times half the area, which must stay below the tolerance times the
+    volume. No hull is refined beyond about `MOST_TRIANGLES`.
+
+    Args:
+        volume: volume of the body's hulls [m^3].
+        area: surface area of the body's hulls [m^2].
+        water: the sea.
+        tolerance: see `Exact.tolerance`.
     """
     if water.curvature == 0.0:
-        return np.inf
+        return math.inf
     fine = np.sqrt(24.0 * tolerance * volume / (area * water.curvature))
     return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
 
@@ -226,9 +238,10 @@ def _longest_edges(
     meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water, tolerance: float
 ) -> list[float]:
     """`longest_edge` of each mesh, from the volume and the area of all meshes of its body."""
-    volumes, areas = (
-        np.array([mesh.volume for mesh in meshes]),
-        np.array([mesh.area for mesh in meshes]),
-    )
-    joint = [(volumes[bodies == body].sum(), areas[bodies == body].sum()) for body in bodies]
-    return [longest_edge(volume, area, water, tolerance) for volume, area in joint]
+    volumes = np.array([mesh.volume for mesh in meshes])
+    areas = np.array([mesh.area for mesh in meshes])
+    together = [bodies == body for body in bodies]
+    return [
+        longest_edge(volumes[which].sum(), areas[which].sum(), water, tolerance)
+        for which in together
+    ]

@@ -23,7 +23,9 @@ class HullSet:
         fills: part of each mesh's volume that displaces water (h,); by default all of it.
 
     Example:
-        >>> hulls = HullSet([box((1.0, 0.5, 0.25)), sphere(0.5)])
+        >>> from buoyancy_mj.meshes import shapes
+        >>> from buoyancy_mj.submersion.hull_set import HullSet
+        >>> hulls = HullSet([shapes.box((1.0, 0.5, 0.25)), shapes.sphere(0.5)])
         >>> packed = Exact().pack(hulls, Water())
     """
 

@@ -1,8 +1,8 @@
 """`Sections`: the source paper's cheaper method, cross-sections integrated along an axis.
 
 After Mahbub and Shaharear (2025). The areas are those of true sections of the mesh, hollows
-included. The error comes from the steps between sections, and from the surface, which is taken as
-a plane perpendicular to the axis: an axis fixed in a body that heels cuts it wrongly.
+included. The error comes from the steps between sections, and from the surface, which is
+replaced by a plane perpendicular to the axis: an axis fixed in a body that heels cuts it wrongly.
 """
 
 import dataclasses
@@ -96,11 +96,15 @@ class PackedSections:
         """Volume that each hull displaces when it is under water (h,) [m^3]."""
         self.results = np.zeros((len(hulls.meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
+
+        # meshes, and the middles of their bounding boxes
         self._meshes = [mesh.compact for mesh in hulls.meshes]
         self._check_step()
         self._middles = [
             0.5 * (vertices.min(axis=0) + vertices.max(axis=0)) for vertices, _ in self._meshes
         ]
+
+        # work done, and tables along an axis of the body
         self._counts = dict.fromkeys(("calls", "sections", "crossings", "tabulated", "look_ups"), 0)
         self._tables = None
         if method.axis is not None:
@@ -159,7 +163,8 @@ class PackedSections:
         s, rows, crossings = cut_sections(vertices @ turn.T, faces, self.method.step, top)
         self._counts["sections"] += len(s)
         self._counts["crossings"] += crossings
-        return integrate(rows, s, self.method.rule)[-1]
+        moments: NDArray[np.float64] = integrate(rows, s, self.method.rule)[-1]
+        return moments
 
     def _integrate_along(
         self, h: int, turn: NDArray[np.float64], depth: float

@@ -1,4 +1,4 @@
-"""`submerge`: the submersion of one mesh, without an engine; and what of it an eye would see."""
+"""`submerge`: the submersion of one mesh, without an engine."""
 
 import dataclasses
 import functools
@@ -24,11 +24,13 @@ class Submersion:
     volume: float
     """Submerged volume [m^3]."""
     centroid: NDArray[np.float64]
-    """Its centroid, the centre of buoyancy (3,) [m], world frame; NaN when dry."""
+    """Centroid of that volume, the centre of buoyancy (3,) [m], world frame; NaN when dry."""
     wetted_area: float
     """Area of the mesh under the surface [m^2]; NaN from a method that does not know it."""
     waterplane_area: float
-    """Area of the hull's cut with the surface, seen from above [m^2]; NaN likewise."""
+    """Area of the hull's cut with the surface, seen from above [m^2].
+
+    It is NaN from a method that does not know it."""
 
 
 def submerge(
@@ -39,20 +41,26 @@ def submerge(
     time: float = 0.0,
     method: str | Method = "exact",
 ) -> Submersion:
-    """The submersion of one mesh, without an engine.
+    """Find the part of one mesh that is under the surface, without an engine.
 
     Args:
         mesh: the hull, in its own frame.
-        position: of the mesh's frame (3,) [m], world frame.
+        position: origin of the mesh's frame (3,) [m], world frame.
         rotation: world_from_mesh (3, 3); None for no rotation.
-        water: fresh and still at z = 0 if None.
-        time: [s], for the waves.
+        water: the sea; fresh water, still at z = 0, if None.
+        time: time of the waves [s].
         method: "exact", "convex_hull" or "sections", or one of these with options.
 
     Raises:
-        MeshError: a position or rotation of the wrong shape, or a rotation that is none.
+        MeshError: a position of the wrong shape, or a rotation that is no rotation matrix.
         MethodError: there is no such method.
+
+    Example:
+        >>> from buoyancy_mj.meshes import shapes
+        >>> submerge(shapes.sphere(0.5), position=(0.0, 0.0, 0.0)).volume
+        0.2617...
     """
+    # the pose
     origin = np.ascontiguousarray(position, float)
     turn = np.eye(3) if rotation is None else np.ascontiguousarray(rotation, float)
     if origin.shape != (3,) or not math.isfinite(sum(origin.tolist(), float(time))):
@@ -61,63 +69,30 @@ def submerge(
         )
     if turn.shape != (3, 3) or not clip.is_rotation(turn):
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
-    chosen, sea = parse_method(method), water or _STILL
-    if type(chosen) is Exact:
+    pose = origin[None], turn.reshape(1, 9), float(time)
+
+    # the submersion; other methods may carry something from step to step, so they are packed anew
+    sea = water or _STILL
+    parsed = parse_method(method)
+    if type(parsed) is Exact:
         with _LOCK:
-            row = (
-                _packed(mesh, sea).submerge(origin[None], turn.reshape(1, 9), float(time))[0].copy()
-            )
+            row = _pack(mesh, sea).submerge(*pose)[0].copy()
     else:
-        # may carry something from step to step
-        row = chosen.pack(HullSet([mesh]), sea).submerge(
-            origin[None], turn.reshape(1, 9), float(time)
-        )[0]
-    volume, _, _, _, wetted_area, waterplane_area = row.tolist()
-    return Submersion(volume, row[clip.CENTROID], wetted_area, waterplane_area)
+        row = parsed.pack(HullSet([mesh]), sea).submerge(*pose)[0]
+    return Submersion(
+        volume=float(row[clip.VOLUME]),
+        centroid=row[clip.CENTROID],
+        wetted_area=float(row[clip.WETTED_AREA]),
+        waterplane_area=float(row[clip.WATERPLANE_AREA]),
+    )
 
 
 _STILL = Water()
-_LOCK = threading.Lock()  # a packed mesh has one set of results
+_LOCK = threading.Lock()
+"""Held while a packed mesh is submerged, which has one array of results."""
 
 
 @functools.lru_cache(maxsize=16)
-def _packed(mesh: TriMesh, water: Water) -> Packed:
-    """A mesh ready to be submerged again and again."""
+def _pack(mesh: TriMesh, water: Water) -> Packed:
+    """A mesh ready to be submerged exactly, again and again."""
     return Exact().pack(HullSet([mesh]), water)
-
-
-def wetted_surface(
-    mesh: TriMesh,
-    position: NDArray[np.float64],
-    rotation: NDArray[np.float64],
-    water: Water,
-    time: float,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """What an eye would see wet: triangles (n, 3, 3) and pieces of the waterline (k, 2, 3) [m], world frame.
-
-    Each face is cut where the depth, linear on it, is zero.
-    """
-    points = mesh.vertices @ np.asarray(rotation, float).reshape(3, 3).T + position
-    depths = water.depth(points, time)
-    corners, d = points[mesh.faces], depths[mesh.faces]
-    wet = d > 0.0
-    count = wet.sum(axis=1)
-    # turn each cut face so that the corner alone on its side comes first
-    cut = (count == 1) | (count == 2)
-    alone = np.argmax(wet[cut] == (count[cut] == 1)[:, None], axis=1)
-    order = (alone[:, None] + np.arange(3)) % 3
-    p = np.take_along_axis(corners[cut], order[:, :, None], axis=1)
-    q = np.take_along_axis(d[cut], order, axis=1)
-    s, t = q[:, 0] / (q[:, 0] - q[:, 1]), q[:, 0] / (q[:, 0] - q[:, 2])
-    a = p[:, 0] + s[:, None] * (p[:, 1] - p[:, 0])
-    b = p[:, 0] + t[:, None] * (p[:, 2] - p[:, 0])
-    one = count[cut] == 1
-    triangles = np.concatenate(
-        [
-            corners[count == 3],
-            np.stack([p[:, 0], a, b], axis=1)[one],
-            np.stack([a, p[:, 1], p[:, 2]], axis=1)[~one],
-            np.stack([a, p[:, 2], b], axis=1)[~one],
-        ]
-    )
-    return triangles, np.stack([a, b], axis=1)

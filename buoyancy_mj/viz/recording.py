@@ -16,7 +16,7 @@ from buoyancy_mj.errors import BuoyancyWarning, RecordingError
 from buoyancy_mj.hulls.selection import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.simulation import Simulation
-from buoyancy_mj.submersion.submerge import wetted_surface
+from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
 from buoyancy_mj.viz import plots
 from buoyancy_mj.viz.geoms import VisibleGeom, find_visible_geoms
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL, TIMELINE
@@ -188,7 +188,7 @@ class Recording:
             )
         self._log_wetness(frame)
         lines = [
-            wetted_surface(
+            cut_wetted_surface(
                 hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time
             )[1]
             for hull, waterplane in zip(
