@@ -42,12 +42,12 @@ def validate(
         found = report.validate(out, only or (), begin)
     for name, rows in found.items():
         table = Table(title=report.CASES[name].title, title_justify="left")
-        for column in ("quantity", "published", "here", "difference", "allowed", "verdict"):
+        for column in report.HEADER:
             table.add_column(column, overflow="fold")
         for row in rows:
-            table.add_row(*(cell.replace("**", "") for cell in report.cells(row)))
+            table.add_row(*(cell.replace("**", "") for cell in report.format_row(row)))
         console.print(table)
     rows = [row for case in found.values() for row in case]
-    console.print(f"{sum(row.passes for row in rows)} of {len(rows)} rows hold", highlight=False)
+    console.print(f"{sum(row.holds for row in rows)} of {len(rows)} rows hold", highlight=False)
     if not only:
         console.print(f"page: {quote(out / 'validation.md')}", highlight=False, soft_wrap=True)

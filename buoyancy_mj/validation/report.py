@@ -1,4 +1,4 @@
-"""All cases: run, and written as a page with tables and pictures."""
+"""All cases: run them, and write a page with tables and pictures."""
 
 import os
 import platform
@@ -7,21 +7,40 @@ from importlib.metadata import version
 from pathlib import Path
 
 from buoyancy_mj.errors import BuoyancyError, choices
-from buoyancy_mj.validation import flows, spheres, vehicles
+from buoyancy_mj.validation import (
+    bluerov2_heavy,
+    coefficients,
+    oes_sphere,
+    otter,
+    remus_100,
+    terminal_speeds,
+    waves,
+)
 from buoyancy_mj.validation.case import Case, Row
 
-CASES: Mapping[str, Case] = {
-    case.name: case for part in (spheres, vehicles, flows) for case in part.CASES
-}
-"""By name."""
+_MODULES = (oes_sphere, bluerov2_heavy, remus_100, otter, coefficients, terminal_speeds, waves)
+CASES: Mapping[str, Case] = {case.name: case for module in _MODULES for case in module.CASES}
+"""The cases by name, in the order of the page."""
+HEADER = ("quantity", "published", "here", "difference", "allowed", "verdict")
+"""Header of the tables of rows."""
 PICTURES = "validation"
 """Folder of the pictures, beside the page."""
+DPI = 110
+"""Resolution of the pictures [dots per inch]."""
 
 
 def validate(
-    folder: Path, only: Sequence[str] = (), begin: Callable[[Case], None] = lambda case: None
+    folder: Path, only: Sequence[str] = (), begin: Callable[[Case], None] = lambda _: None
 ) -> dict[str, Sequence[Row]]:
-    """Run cases; without `only`, write the page 'validation.md' and its pictures.
+    """Run cases; if all run, write the page 'validation.md' and its pictures.
+
+    Args:
+        folder: where page and pictures go.
+        only: names of cases; empty for all.
+        begin: called with each case before it runs.
+
+    Returns:
+        The rows by the name of their case.
 
     Raises:
         BuoyancyError: there is no such case, or the folder cannot be written to.
@@ -29,70 +48,86 @@ def validate(
     for name in only:
         if name not in CASES:
             raise BuoyancyError(f"there is no case '{name}'; {choices(name, CASES)}")
-    found = {}
+
+    results = {}
     for name, case in CASES.items():
         if not only or name in only:
             begin(case)
-            found[name] = case.run()
+            results[name] = case.run()
     if not only:
-        try:
-            (folder / PICTURES).mkdir(parents=True, exist_ok=True)
-            for name, case in CASES.items():
-                if case.draw is not None:
-                    case.draw().savefig(
-                        folder / PICTURES / f"{name}.png", dpi=110, metadata={"Software": None}
-                    )
-            (folder / "validation.md").write_text(page(found))
-        except OSError as error:
-            raise BuoyancyError(f"cannot write the validation to '{folder}': {error}") from error
-    return found
+        _write(folder, results)
+    return results
 
 
-def page(found: Mapping[str, Sequence[Row]]) -> str:
-    """The page, in Markdown."""
-    rows = [row for case in found.values() for row in case]
-    passed = sum(row.passes for row in rows)
+def _write(folder: Path, results: Mapping[str, Sequence[Row]]) -> None:
+    """Write the page and its pictures."""
+    try:
+        (folder / PICTURES).mkdir(parents=True, exist_ok=True)
+        for name, case in CASES.items():
+            if case.draw is not None:
+                picture = folder / PICTURES / f"{name}.png"
+                case.draw().savefig(picture, dpi=DPI, metadata={"Software": None})
+        (folder / "validation.md").write_text(render_page(results))
+    except OSError as error:
+        raise BuoyancyError(f"cannot write the validation to '{folder}': {error}") from error
+
+
+def render_page(results: Mapping[str, Sequence[Row]]) -> str:
+    """Write the page in Markdown, from rows by the name of their case."""
+    rows = [row for case_rows in results.values() for row in case_rows]
+    holding = sum(row.holds for row in rows)
     machine = (
         f"{os.cpu_count()} cores, Python {platform.python_version()}, MuJoCo {version('mujoco')}"
     )
-    parts = [_PAGE.format(count=len(rows), passed=passed, machine=machine)]
-    for name, results in found.items():
-        case = CASES[name]
-        parts.append(f"## {case.title}\n\nPublished: {case.source}. Here: {case.what}\n")
-        parts.append(
-            "| quantity | published | here | difference | allowed | verdict |\n| --- | ---: | ---: | ---: | ---: | --- |"
-        )
-        parts += [f"| {' | '.join(cells(row))} |" for row in results]
-        failed = sum(not row.passes for row in results)
-        if failed:
-            parts.append(f"\n{failed} of {len(results)} fail. {case.reason}")
-        if case.draw is not None:
-            parts.append(f"\n![{case.title}]({PICTURES}/{name}.png)")
-        parts.append(f"\n`buoyancy-mj validate --only {name}`\n")
+    parts = [_HEAD.format(count=len(rows), holding=holding, machine=machine)]
+    parts += [_render_case(CASES[name], case_rows) for name, case_rows in results.items()]
     return "\n".join(parts).rstrip() + "\n"
 
 
-def cells(row: Row) -> tuple[str, ...]:
-    """A row as text."""
+def _render_case(case: Case, rows: Sequence[Row]) -> str:
+    """Write the section of a case: sources, table, reason, picture and command."""
+    lines = [
+        f"## {case.title}\n",
+        f"Published: {case.source}.\n",
+        f"Here: {case.setup}\n",
+        f"| {' | '.join(HEADER)} |",
+        "| --- | ---: | ---: | ---: | ---: | --- |",
+    ]
+    lines += [f"| {' | '.join(format_row(row))} |" for row in rows]
+    failing = sum(not row.holds for row in rows)
+    if failing:
+        lines.append(f"\n{failing} of {len(rows)} fail. {case.reason}")
+    if case.draw is not None:
+        lines.append(f"\n![{case.title}]({PICTURES}/{case.name}.png)")
+    lines.append(f"\n`buoyancy-mj validate --only {case.name}`\n")
+    return "\n".join(lines)
+
+
+def format_row(row: Row) -> tuple[str, ...]:
+    """The cells of a row as text, in the order of `HEADER`."""
     if row.absolute:
-        apart, allowed = f"{row.difference:+.3g}", f"{row.allowed:.3g}"
+        difference = f"{row.difference:+.3g}"
+        tolerance = f"{row.tolerance:.3g}"
     else:
-        apart, allowed = f"{100 * row.difference:+.2g} %", f"{100 * row.allowed:.2g} %"
+        difference = f"{100 * row.difference:+.2g} %"
+        tolerance = f"{100 * row.tolerance:.2g} %"
     return (
         row.quantity,
         f"{row.published:.4g}",
-        f"{row.ours:.4g}",
-        apart,
-        allowed,
-        "holds" if row.passes else "**fails**",
+        f"{row.computed:.4g}",
+        difference,
+        tolerance,
+        "holds" if row.holds else "**fails**",
     )
 
 
-_PAGE = """# Against the world
+_HEAD = """# Against the world
 
-Published experiments, benchmarks and closed forms beside what comes out here, written by
+This page sets published experiments, benchmarks and closed forms beside what this package computes.
+The page and its pictures are written by
 
     scripts/validate
 
-with its pictures; last on {machine}. {passed} of {count} rows hold. What fails stays, with its reason.
+The last run was on {machine}. {holding} of {count} rows hold. Those that fail stay on the page,
+with the reason below their table.
 """

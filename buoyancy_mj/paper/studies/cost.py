@@ -45,7 +45,7 @@ def measure_timing(quick: bool) -> Result:
     claim = Claim(
         "updates at 60 Hz",
         "60 Hz, 16.7 ms each",
-        f"99 % of the updates take less than, AUV of 15 meshes: {words['sauvc_auv']}; "
+        f"99 % of the updates take less than these times. AUV of 15 meshes: {words['sauvc_auv']}; "
         f"hourglass: {words['hourglass']}",
         judge(max(every) < 1.0 / 60.0, min(every) < 1.0 / 60.0),
     )
@@ -193,9 +193,9 @@ def _check_iterations(works: Mapping[str, _Work]) -> Claim:
     return Claim(
         "sections take fewer iterations than the hull",
         "40 % fewer",
-        "the paper does not say what it counts. Cross-sections are fewer than vertices looked at "
-        f"and given to Quickhull by {fewer}; but the triangles that they meet are {more} as many. "
-        "The wall times of the updates at 60 Hz weigh them fairly",
+        "the paper does not say what it counts. Cross-sections are fewer than the vertices that "
+        f"are looked at and the points given to Quickhull, by {fewer}; but the triangles that they "
+        f"meet are {more} as many. The wall times of the updates at 60 Hz weigh both fairly",
         judge(
             max(work.more_triangles for work in works.values()) < 0.6,
             min(work.fewer_sections for work in works.values()) >= 0.4,

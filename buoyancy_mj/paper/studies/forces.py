@@ -53,9 +53,9 @@ def measure_force(quick: bool) -> Result:
     claim = Claim(
         "the force adapts within 16 ms",
         "16 ms",
-        "against the force of the present pose, in a drop rolled by 20 degrees: "
-        f"{itemize(errors)}, where the time is that for which more than 1 % of the largest force "
-        "is missing: the hull waits for its vertices to be sorted",
+        "in a drop rolled by 20 degrees, beside the force of the present pose: "
+        f"{itemize(errors)}. Each time is how long more than 1 % of the largest force is missing: "
+        "the hull waits for its vertices to be sorted",
         judge(max(delays.values()) <= 0.016, min(delays.values()) <= 0.016),
     )
     return Result({"force": slow, "force_in_a_drop": drop}, (claim,))

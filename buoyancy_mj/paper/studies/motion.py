@@ -133,11 +133,11 @@ def _check_oscillation(rows: Sequence[Combination], masses: Sequence[float]) -> 
         "the centre of gravity oscillates within 0.05 m on the waves, "
         "for some mass, damping and wave",
         "within 0.05 m",
-        f"{len(calm)} of {len(rows)} combinations do. On both kinds of waves, with the water's "
-        "drag or not, a damping against the world, as physics engines offer and water does not, "
-        f"gives it from {always} on (mass over displacement); below that only: "
-        f"{'; '.join(sooner) or 'none'}. Without such a damping the swing is "
-        f"{min(undamped):.2f} to {max(undamped):.2f} m",
+        f"{len(calm)} of {len(rows)} combinations do. Damping against the world, which physics "
+        "engines offer and water does not, is enough on both kinds of waves, with the water's "
+        f"drag or without, from these rates up: {always}, for a mass over displacement. "
+        f"Below them only these combinations do: {'; '.join(sooner) or 'none'}. Without such "
+        f"damping the swing is {min(undamped):.2f} to {max(undamped):.2f} m",
         judge(len(calm) == len(rows), bool(calm)),
     )
 

@@ -37,9 +37,10 @@ def _check_line(dz: NDArray[np.float64], columns: dict[str, NDArray[np.float64]]
     return Claim(
         "dz and volume of the hourglass correspond linearly",
         "linear",
-        f"the volume is off the best line by up to {percent(off)} of the whole (R^2 {r2:.3f}), "
-        f"its slope falls to {percent(neck_slope)} at the neck; by the hull that fills the neck "
-        f"by {percent(hull_off)} (R^2 {hull_r2:.3f})",
+        f"the volume differs from the best line by up to {percent(off)} of the whole "
+        f"(R^2 {r2:.3f}), and its slope falls to {percent(neck_slope)} at the neck; "
+        "by the hull method, which fills the neck, the volume differs by "
+        f"{percent(hull_off)} (R^2 {hull_r2:.3f})",
         judge(off < 0.02),
     )
 
@@ -60,8 +61,8 @@ def _check_sections(
     return Claim(
         "sections agree with the hull method, hourglass",
         "within 3 %",
-        f"where a tenth of the whole or more is wet the hull's volume is off the sections' by up "
-        f"to {past} past the neck, and {below} below it; the sections are within "
+        "where a tenth of the whole or more is wet, the hull's volume differs from the sections' "
+        f"by up to {past} past the neck, and {below} below it; the sections are within "
         f"{percent(np.abs(cut - exact).max() / whole)} of the closed form",
         judge(abs(_largest_error(hull, cut, deep)) < 0.03),
     )
