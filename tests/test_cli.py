@@ -305,12 +305,11 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
         command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
     partial = tmp_path / "out.partial.rrd"
-    deadline = time.monotonic() + 120.0
     while not (partial.exists() and partial.stat().st_size > 200_000):
-        assert time.monotonic() < deadline
+        assert process.poll() is None
         time.sleep(0.1)
     os.kill(process.pid, sent)
-    _, told = process.communicate(timeout=60)
+    _, told = process.communicate(timeout=600)
     assert process.returncode == 130
     assert re.search(r"the recording up to .* s is in 'out.rrd'", told), told
     assert "Traceback" not in told

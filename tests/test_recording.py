@@ -145,12 +145,11 @@ def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
         command, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True
     )
     partial = tmp_path / "run.partial.rrd"
-    deadline = time.monotonic() + 60.0
     while not (partial.exists() and partial.stat().st_size > 4_000_000):
-        assert time.monotonic() < deadline
+        assert process.poll() is None
         time.sleep(0.1)
     process.kill()
-    process.wait(timeout=30)
+    process.wait(timeout=600)
     assert "/world/bodies/sauvc_auv" in entities(rerun("print", "-vv", str(partial)).stdout)
     # and another run may take its place
     recorded(tmp_path / "run.rrd")
@@ -183,7 +182,7 @@ def test_a_full_disk_ends_the_recording_at_a_whole_message_and_says_so(tmp_path)
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=600,
     )
     assert (
         f"the recording broke off: File too large; what was written is in '{path}'" in done.stdout
@@ -290,7 +289,7 @@ def test_a_live_viewer_that_cannot_open_is_told_and_leaves_nothing(tmp_path):
         capture_output=True,
         text=True,
         check=False,
-        timeout=120,
+        timeout=600,
     )
     assert done.returncode == 1
     assert "error: no Rerun viewer could be started" in done.stderr

@@ -66,7 +66,7 @@ def test_without_a_display_the_viewer_says_so():
     }
     done = subprocess.run(
         [sys.executable, "-m", "buoyancy_mj", "view", "hourglass_drop_still"],
-        env=environment, capture_output=True, text=True, check=False, timeout=120,
+        env=environment, capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
     assert done.returncode == 1
     assert done.stderr == (
