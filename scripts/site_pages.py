@@ -72,7 +72,7 @@ def on_page_content(content: str, **_: Any) -> str:
     return re.sub(pattern, formula, content, flags=re.DOTALL)
 
 
-# pages from the top of the repository ----------------------------------------------------------------
+# pages from the top of the repository -------------------------------------------------------------
 
 
 def repository_page(path: Path) -> str:
@@ -83,7 +83,7 @@ def repository_page(path: Path) -> str:
     return text
 
 
-# the reference ---------------------------------------------------------------------------------------
+# the reference ----------------------------------------------------------------------------------
 
 
 def reference_pages() -> dict[str, str]:
@@ -140,7 +140,7 @@ def _said(item: griffe.Object | griffe.Alias) -> str:
     return " ".join(item.docstring.value.split("\n\n")[0].split())
 
 
-# keys ------------------------------------------------------------------------------------------------
+# keys -------------------------------------------------------------------------------------------
 
 
 def scene_page(package: griffe.Module) -> str:
