@@ -59,7 +59,7 @@ def blocks(language):
 
 
 def command_lines():
-    """Each line of each block of a shell, and each command within a paragraph."""
+    """Each line of each block for a shell, and each command named in a sentence."""
     lines = {
         f"{block.id} {line}": line
         for block in blocks("sh")
@@ -165,7 +165,17 @@ def test_the_command_lines_are_understood(line):
 
 def understand(command, *words):
     """Run a command, shortened, or only parse it where it opens a window or takes minutes."""
-    parsed = typer.main.get_command(app).commands[command].make_context(command, list(words))
+    commands = typer.main.get_command(app).commands
+    if all(word.startswith("--") for word in words) and command not in (
+        "list",
+        "paper",
+        "validate",
+    ):
+        # a command and its flags, named in a sentence
+        known = {flag for parameter in commands[command].params for flag in parameter.opts}
+        assert set(words) <= known | {"--help"}
+        return
+    parsed = commands[command].make_context(command, list(words))
     only = {"paper": STUDIES, "validate": CASES}.get(command)
     if only is not None:
         assert set(parsed.params["only"] or ()) <= set(only)
