@@ -29,6 +29,8 @@ MARKS = ("<!-- written by scripts/draw_house.py -->\n", "<!-- end -->\n")
 """What stands before and after the table on the page."""
 WIDTH, HEIGHT, GAP = 12.0, 1.05, 0.75
 """Width of the picture, height of a room and distance between floors."""
+EVERYWHERE = {"errors", "records"}
+"""Small rooms that serve any other, so that their streams would say nothing."""
 INK, WATER, BANK = "#12343b", "#2a8ca8", "#e9f4f5"
 
 
@@ -156,7 +158,7 @@ class Box(NamedTuple):
 
 
 def draw(rooms: Sequence[Room]) -> Figure:
-    """The picture: floors from top to bottom, streams from each room to those that it feeds first."""
+    """The picture: floors from top to bottom, a stream from each room to those that it feeds."""
     tall = 0.45 + (1 + rooms[-1].floor) * (HEIGHT + GAP)
     figure = Figure(figsize=(WIDTH, tall))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
@@ -175,14 +177,14 @@ def draw(rooms: Sequence[Room]) -> Figure:
 
 
 def first_sources(rooms: Sequence[Room]) -> dict[str, list[str]]:
-    """For each room those imports that no other of its imports has upstream; `errors` feeds all."""
+    """For each room those imports that no other of its imports has upstream."""
     upstream: dict[str, frozenset[str]] = {}
     for room in rooms:
         upstream[room.name] = room.imports.union(*(upstream[name] for name in room.imports))
     return {
         room.name: sorted(
             name
-            for name in room.imports - {"errors"}
+            for name in room.imports - EVERYWHERE
             if not any(name in upstream[other] for other in room.imports)
         )
         for room in rooms
