@@ -5,15 +5,16 @@ repository; the reference of public names, one page for each room; the keys of a
 plugin, from the dataclasses that read them. A public name without a docstring ends the build.
 """
 
+import ast
 import dataclasses
 import html
 import math
 import re
 import types
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import griffe
 from latex2mathml.converter import convert
@@ -21,10 +22,15 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 
+from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.loads.damping import VISCOUS, Damping
+from buoyancy_mj.records import field_docs
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import Wave
-from buoyancy_mj.settings.settings import CURRENTS, KEYS, WAVES, Settings
+from buoyancy_mj.settings.config import KEYS
+from buoyancy_mj.settings.settings import Settings
+from buoyancy_mj.settings.toml import CURRENTS, WAVES
 from buoyancy_mj.submersion.methods import METHODS, Method
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -34,14 +40,26 @@ COPIES = {
     "CONTRIBUTING.md": "contributing.md",
 }
 """Files at the top of the repository, and the pages that they become."""
-UNWRITTEN = ("text", "folder")
-"""Fields of a scene that its reader fills in."""
+UNWRITTEN = ("text", "folder", "viscous")
+"""Fields that are no keys: a scene's reader fills in two, the kind of a damping is the third."""
 WORDS = {bool: "true or false", int: "whole number", float: "number", str: "text", Path: "path"}
 """Types as a writer of TOML says them."""
+CLASSES = {Wave: tuple(WAVES.values()), Method: tuple(METHODS.values())}
+"""Classes that stand behind a protocol."""
 KINDS = {cls: kind for table in (WAVES, CURRENTS, METHODS) for kind, cls in table.items()}
 """Kinds by the class that each becomes."""
-CHOICES = {Wave: tuple(WAVES.values()), Method: tuple(METHODS.values())}
-"""Classes that stand behind a protocol."""
+HEAD = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
+
+
+class Table(NamedTuple):
+    """A table that a scene may have."""
+
+    path: str
+    """Its key, from the top of the scene."""
+    kind: str
+    """Its kind; empty where it has only one."""
+    classes: tuple[type, ...]
+    """The dataclasses whose fields are its keys."""
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
@@ -71,7 +89,7 @@ def on_page_content(content: str, **_: Any) -> str:
     return re.sub(pattern, formula, content, flags=re.DOTALL)
 
 
-# pages from the top of the repository ----------------------------------------------------------------
+# pages from the top of the repository -------------------------------------------------------------
 
 
 def repository_page(path: Path) -> str:
@@ -82,31 +100,35 @@ def repository_page(path: Path) -> str:
     return text
 
 
-# the reference ---------------------------------------------------------------------------------------
+# the reference ----------------------------------------------------------------------------------
 
 
 def reference_pages() -> dict[str, str]:
     """All pages of the reference by name."""
     package = griffe.load("buoyancy_mj", search_paths=[str(ROOT)], resolve_aliases=True)
-    rooms: dict[str, list[str]] = {}
-    for name, member in package.members.items():
-        if member.is_alias and not name.startswith("_"):
-            rooms.setdefault(member.target_path.split(".")[1], []).append(name)
-    silent = [
-        path for names in rooms.values() for name in names for path in undocumented(package[name])
-    ]
+    rooms = public_names()
+    names = [name for group in rooms.values() for name in group]
+    silent = [path for name in names for path in undocumented(package[name])]
     if silent:
         raise PluginError(f"public names without a docstring: {', '.join(silent)}")
     pages = {"reference/index.md": _overview(package, rooms)}
-    for room, names in rooms.items():
-        blocks = [f"::: buoyancy_mj.{name}\n" for name in names]
+    for room, group in rooms.items():
+        blocks = [f"::: buoyancy_mj.{name}\n" for name in group]
         pages[f"reference/{room}.md"] = "\n".join(
-            [f"# {room}\n\n{_said(package[room])}\n", *blocks]
+            [f"# {room}\n\n{_first_paragraph(package[room].docstring.value)}\n", *blocks]
         )
-    return pages | {
-        "reference/scene.md": scene_page(package),
-        "reference/plugin.md": plugin_page(package),
-    }
+    return pages | {"reference/scene.md": scene_page(), "reference/plugin.md": plugin_page()}
+
+
+def public_names() -> dict[str, list[str]]:
+    """The names that `from buoyancy_mj import` gives, by the room that they come from."""
+    rooms: dict[str, list[str]] = {}
+    for node in ast.parse((ROOT / "buoyancy_mj" / "__init__.py").read_text()).body:
+        if isinstance(node, ast.ImportFrom) and node.module.startswith("buoyancy_mj."):
+            room = node.module.split(".")[1]
+            public = [alias.name for alias in node.names if alias.asname == alias.name]
+            rooms.setdefault(room, []).extend(public)
+    return {room: names for room, names in rooms.items() if names}
 
 
 def undocumented(item: griffe.Object | griffe.Alias) -> Iterator[str]:
@@ -130,89 +152,96 @@ def _overview(package: griffe.Module, rooms: Mapping[str, list[str]]) -> str:
     ]
     for room, names in rooms.items():
         for name in names:
-            lines.append(f"| [`{name}`]({room}.md#buoyancy_mj.{name}) | {_said(package[name])} |")
+            said = _first_paragraph(package[name].docstring.value)
+            lines.append(f"| [`{name}`]({room}.md#buoyancy_mj.{name}) | {said} |")
     return "\n".join(lines) + "\n"
 
 
-def _said(item: griffe.Object | griffe.Alias) -> str:
+def _first_paragraph(text: str) -> str:
     """The first paragraph of a docstring, on one line."""
-    return " ".join(item.docstring.value.split("\n\n")[0].split())
+    return " ".join(text.strip().split("\n\n")[0].split())
 
 
-# keys ------------------------------------------------------------------------------------------------
+# keys -------------------------------------------------------------------------------------------
 
 
-def scene_page(package: griffe.Module) -> str:
+def scene_page() -> str:
     """Every key of a scene."""
     parts = [
         "# Keys of a scene\n",
-        "A scene is a TOML file. This page lists every key that it may have; `--set KEY=VALUE` reaches each. "
-        "Units are SI, angles radians.\n",
+        "A scene is a TOML file. This page lists every key that it may have, and `--set KEY=VALUE`",
+        "reaches each. Units are SI, angles are radians.\n",
         "## At the top\n",
-        _table(package, Scene),
+        *HEAD,
+        *rows(Scene).values(),
+        "",
     ]
-    for path, cls in _tables(Scene):
-        parts += [
-            f"## {_heading(path, cls)}\n",
-            _said(_definition(package, cls)) + "\n",
-            _table(package, cls),
-        ]
+    for path, kind, classes in tables(Scene):
+        parts.append(f"## `{path}`, kind `{kind}`\n" if kind else f"## `{path}`\n")
+        parts.append(f"{_first_paragraph(classes[0].__doc__ or '')}\n")
+        parts += [*HEAD, *(row for cls in classes for row in rows(cls).values()), ""]
     return "\n".join(parts)
 
 
-def plugin_page(package: griffe.Module) -> str:
+def plugin_page() -> str:
     """Every key of the plugin."""
-    rows = {}
-    for owner in (Water, Settings, *_dataclasses(Settings)):
-        rows |= {
-            name: row for name, row in _rows(package, owner) if name in KEYS and name not in rows
-        }
-    missing = set(KEYS) - set(rows)
-    if missing:
-        raise PluginError(f"keys of the plugin that no dataclass has: {', '.join(sorted(missing))}")
+    known = rows(Water) | rows(Settings)
     return "\n".join(
         [
             "# Keys of the plugin\n",
-            "A key stands in `<config key=... value=.../>` of an instance of `buoyancy_mj.water`. "
-            "This page lists all of them; each may be left out.\n",
-            "| key | value | default | meaning |",
-            "| --- | --- | --- | --- |",
-            *(rows[key] for key in KEYS),
+            "A key stands in `<config key=... value=.../>` of an instance of the plugin",
+            "`buoyancy_mj.water`. This page lists all of them; each may be left out.\n",
+            *HEAD,
+            *(known[key] for key in KEYS),
             "",
-            "A value is written as in TOML, without blanks inside. A wave, a current, a method and a damping are a kind and "
-            "its fields, `regular amplitude=0.3 period=2`, and a semicolon separates waves. A constant current is three "
-            "numbers; `geoms`, `hull` and `fill` are patterns between blanks. The fields are those of the "
-            "[tables of a scene](scene.md).\n",
+            "A value is written as in TOML, without blanks inside. A wave, a current, a method and",
+            "a damping are a kind and its fields, `regular amplitude=0.3 period=2`; a semicolon",
+            "separates waves. A constant current is three numbers; `geoms`, `hull` and `fill` are",
+            "patterns between blanks. The fields are those of the [tables of a scene](scene.md).\n",
         ]
     )
 
 
-def _heading(path: str, cls: type) -> str:
-    """How a table of a scene is headed, with its kind where it has one."""
-    kind = KINDS.get(cls) or (
-        cls.__name__.lower() if path.count(".") and cls not in (Water,) else ""
-    )
-    return f"`{path}`, kind `{kind}`" if kind else f"`{path}`"
+def tables(cls: type, path: str = "") -> Iterator[Table]:
+    """The tables inside a table, and those inside them."""
+    hints = typing.get_type_hints(cls)
+    for field in _keys(cls):
+        place = f"{path}{field.name}"
+        for inner in _classes(hints.get(field.name)):
+            if inner is Damping:
+                for kind, viscous in VISCOUS.items():
+                    yield Table(place, kind, (viscous, inner) if viscous else (inner,))
+            else:
+                yield Table(place, KINDS.get(inner, ""), (inner,))
+                yield from tables(inner, f"{place}.")
 
 
-def _tables(cls: type, path: str = "") -> Iterator[tuple[str, type]]:
-    """The tables in a table, and theirs, with their paths."""
-    for field in dataclasses.fields(cls):
-        for inner in _classes(typing.get_type_hints(cls)[field.name]):
-            place = f"{path}{field.name}"
-            yield place, inner
-            yield from _tables(inner, f"{place}.")
+def rows(cls: type) -> dict[str, str]:
+    """The keys of a dataclass, each with its row of a page."""
+    hints = typing.get_type_hints(cls) | typing.get_type_hints(Selection)
+    docs = field_docs(cls) | field_docs(Selection)
+    result = {}
+    for field in _keys(cls):
+        meaning = " ".join(docs[field.name].split())
+        cells = (f"`{field.name}`", _value(hints[field.name]), _default(field), meaning)
+        result[field.name] = f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
+    return result
 
 
-def _dataclasses(cls: type) -> Iterator[type]:
-    """The dataclasses that the fields of a dataclass hold."""
-    return (inner for _, inner in _tables(cls))
+def _keys(cls: type) -> Iterator[dataclasses.Field[Any]]:
+    """The fields that are keys, those of the class itself first; a selection stands among them."""
+    fields = {field.name: field for field in dataclasses.fields(cls)}
+    for name in dict.fromkeys([*cls.__annotations__, *fields]):
+        if name == "selection":
+            yield from dataclasses.fields(Selection)
+        elif name in fields and name not in UNWRITTEN:
+            yield fields[name]
 
 
 def _classes(hint: Any) -> Iterator[type]:
     """The dataclasses that a value of a type may be."""
-    if hint in CHOICES:
-        yield from CHOICES[hint]
+    if hint in CLASSES:
+        yield from CLASSES[hint]
     elif dataclasses.is_dataclass(hint):
         yield hint
     elif typing.get_origin(hint) in (typing.Union, types.UnionType):
@@ -220,53 +249,29 @@ def _classes(hint: Any) -> Iterator[type]:
             yield from _classes(part)
 
 
-def _table(package: griffe.Module, cls: type) -> str:
-    """The keys of a dataclass as a table."""
-    rows = [row for _, row in _rows(package, cls)]
-    return "\n".join(
-        ["| key | value | default | meaning |", "| --- | --- | --- | --- |", *rows, ""]
-    )
-
-
-def _rows(package: griffe.Module, cls: type) -> Iterator[tuple[str, str]]:
-    """Each field of a dataclass, and its row."""
-    documented = _definition(package, cls).all_members
-    hints = typing.get_type_hints(cls)
-    for field in dataclasses.fields(cls):
-        if field.name in UNWRITTEN:
-            continue
-        meaning = " ".join(documented[field.name].docstring.value.split())
-        cells = (f"`{field.name}`", _value(hints[field.name]), _default(field), meaning)
-        yield field.name, f"| {' | '.join(cell.replace('|', chr(92) + '|') for cell in cells)} |"
-
-
-def _definition(package: griffe.Module, cls: type) -> griffe.Object | griffe.Alias:
-    """A class as griffe read it."""
-    return package[f"{cls.__module__.removeprefix('buoyancy_mj.')}.{cls.__name__}"]
-
-
 def _value(hint: Any) -> str:
     """What may be written for a field."""
+    origin, parts = typing.get_origin(hint), typing.get_args(hint)
     if hint in WORDS:
         return WORDS[hint]
-    if typing.get_origin(hint) in (typing.Union, types.UnionType):
-        parts = [part for part in typing.get_args(hint) if part is not type(None)]
-        if Wave in parts:
-            return "list of tables"
-        return " or ".join(dict.fromkeys(_value(part) for part in parts))
-    if typing.get_origin(hint) is tuple:
-        first, *others = typing.get_args(hint)
-        if others and others[-1] is Ellipsis:
-            return f"list of {WORDS.get(first, 'list')}s"
-        return f"list of {len(others) + 1} {WORDS[first]}s"
-    return "kind or table" if hint is Method or hint in KINDS else "table"
+    if origin in (typing.Union, types.UnionType):
+        lists = [part for part in parts if typing.get_origin(part) is Sequence]
+        parts = [part for part in parts if part is not type(None)]
+        return " or ".join(dict.fromkeys(filter(None, map(_value, lists or parts))))
+    if origin is Sequence or (origin is tuple and parts[-1] is Ellipsis):
+        return f"list of {WORDS.get(parts[0], 'table' if parts[0] in CLASSES else 'list')}s"
+    if origin is tuple:
+        return f"list of {len(parts)} {WORDS[parts[0]]}s"
+    if origin is Mapping:
+        return ""
+    return "kind or table" if hint in (Method, Damping) else "table"
 
 
 def _default(field: dataclasses.Field[Any]) -> str:
     """What a field is if it is left out."""
     value = field.default
     if value is dataclasses.MISSING:
-        return "" if field.default_factory is not dataclasses.MISSING else "**needed**"
+        return "**needed**"
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if dataclasses.is_dataclass(value):

@@ -1,98 +1,294 @@
-"""The code in the README runs, and what it names exists."""
+"""What the pages show works: code runs, commands are understood, snippets parse, names exist."""
 
+import ast
+import importlib
+import importlib.util
+import os
 import re
 import shlex
+import shutil
+import subprocess
+import sys
+import tomllib
 from pathlib import Path
 
 import mujoco
+import numpy as np
 import pytest
+import typer
+import xarray
 from typer.testing import CliRunner
 
-from buoyancy_mj import water_in
+import buoyancy_mj
+from buoyancy_mj import Buoyancy, Water, water_in
 from buoyancy_mj.cli import app
+from buoyancy_mj.loads.coefficients import DOFS
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.scene import scene_from_table
 
 ROOT = Path(__file__).parent.parent
-README = (ROOT / "README.md").read_text()
+PAGES = {
+    path.relative_to(ROOT).as_posix(): path.read_text()
+    for path in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
+}
+README = PAGES["README.md"]
+COMMANDS = "docs/guide/command_line.md"
+"""The page that shows a whole scene."""
+GENERATED = ROOT / "docs" / "reference"
+"""Pages that only the site has."""
+ROOMS = [
+    path.stem
+    for path in sorted((ROOT / "buoyancy_mj").iterdir())
+    if not path.name.startswith("_") and (path.suffix == ".py" or (path / "__init__.py").exists())
+]
+VEHICLE = """<worldbody><body name="rov" pos="0 0 -1"><freejoint/>
+<geom name="hull" size=".2"/>
+<geom name="shroud" size=".1" pos=".5 0 0" group="2"/>
+<geom name="frame" size=".1" pos="-.5 0 0" group="2"/>
+</body></worldbody>"""
+"""Something for the snippets of MJCF to speak of."""
 
 
-@pytest.mark.parametrize(
-    ("code", "told"),
-    [
-        *zip(
-            re.findall(r"```python\n(.*?)```", README, re.DOTALL),
-            ["m^3 under water", "] N", "kg make it neutral", "Pa, under"],
-            strict=True,
-        )
-    ],
-)
-def test_the_lines_of_python_run(code, told, capsys):
+def blocks(language):
+    """The fenced blocks of a language on all pages, by page and line."""
+    return [
+        pytest.param(found[1], id=f"{page}:{text.count(chr(10), 0, found.start()) + 1}")
+        for page, text in PAGES.items()
+        for found in re.finditer(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    ]
+
+
+def command_lines():
+    """Each line of each block for a shell, and each command named in a sentence."""
+    lines = {
+        f"{block.id} {line}": line
+        for block in blocks("sh")
+        for line in block.values[0].splitlines()
+        if line.split("#")[0].strip()
+    }
+    for page, text in PAGES.items():
+        for line in re.findall(r"`((?:\.venv/bin/)?buoyancy-mj [a-z][^`]*)`", text):
+            lines[f"{page} {line}"] = line
+    return [pytest.param(line, id=name) for name, line in lines.items()]
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """A folder with the files that the pages name, to work in."""
     vehicle = catalog.models()["sauvc_auv"]
-    exec(compile(code.replace("my_auv.xml", vehicle.as_posix()), "README.md", "exec"), {})
-    assert told in capsys.readouterr().out
+    for name in ("my_auv.xml", "path/to/my_vehicle.xml"):
+        shutil.copytree(vehicle.parent, (tmp_path / name).parent, dirs_exist_ok=True)
+        shutil.copy(vehicle, tmp_path / name)
+    (scene,) = re.findall(r"^```toml\n(title.*?)^```", PAGES[COMMANDS], re.MULTILINE | re.DOTALL)
+    (tmp_path / "my_scene.toml").write_text(scene)
+    (tmp_path / "tide.csv").write_text("time, u, v, w\n0, 0.1, 0, 0\n3600, 0.3, 0, 0\n")
+    (tmp_path / "my_boat.xml").write_text(f"<mujoco>{VEHICLE.replace('rov', 'hull')}</mujoco>")
+    over = ("omega", "influenced_dof", "radiating_dof")
+    matrices = (over, np.eye(6)[None])
+    names = [f"hull__{dof}" for dof in DOFS]
+    xarray.Dataset(
+        {"added_mass": matrices, "radiation_damping": matrices},
+        coords={"omega": [0.7], "influenced_dof": names, "radiating_dof": names},
+    ).to_netcdf(tmp_path / "boat.nc")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
 
 
-def test_the_extension_in_the_readme_is_one():
-    (extension,) = re.findall(r"    <extension>.*?</extension>", README, re.DOTALL)
-    model = mujoco.MjModel.from_xml_string(
-        f"<mujoco>{extension}<worldbody><body><freejoint/><geom size='.1'/></body></worldbody>"
-        "</mujoco>"
+def script(name):
+    """A module of the folder scripts."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "scripts" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.usefixtures("desk")
+@pytest.mark.parametrize("code", blocks("python"))
+def test_the_python_runs_and_prints_what_it_says(code, capsys):
+    exec(compile(code, "page", "exec"), {})
+    printed = capsys.readouterr().out
+    assert printed.strip()
+    for call in ast.walk(ast.parse(code)):
+        if (
+            isinstance(call, ast.Call)
+            and isinstance(call.func, ast.Name)
+            and call.func.id == "print"
+        ):
+            for said in call.args:
+                assert not isinstance(said, ast.Constant) or said.value in printed
+
+
+@pytest.mark.usefixtures("desk")
+@pytest.mark.parametrize("snippet", blocks("xml"))
+def test_the_mjcf_compiles_and_floats(snippet):
+    whole = snippet if "<mujoco" in snippet else f"<mujoco>{snippet}{VEHICLE}</mujoco>"
+    model = mujoco.MjModel.from_xml_string(whole)
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    instances = re.findall(r'instance name="(\w+)"', snippet)
+    waters = [water_in(model, name) for name in instances] or [Buoyancy(model, Water())]
+    for water in waters:
+        assert water.evaluate(data).total.volume > 0.0
+
+
+def test_the_extension_in_the_guide_is_the_water_that_it_looks_like():
+    (extension,) = re.findall(
+        r"<extension>.*?</extension>", PAGES["docs/guide/model.md"], re.DOTALL
     )
+    model = mujoco.MjModel.from_xml_string(f"<mujoco>{extension}{VEHICLE}</mujoco>")
     water = water_in(model).water
     assert (water.density, len(water.waves), water.current) == (1025.0, 2, (0.2, 0.0, 0.0))
 
 
-@pytest.mark.parametrize("line", re.findall(r"\.venv/bin/buoyancy-mj (sweep .*)", README))
-def test_the_sweeps_are_understood(line, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    words = [re.sub(r":[67]$", ":1", word) for word in shlex.split(line)]
-    words[-1:] = [words[-1], "--duration", "0.02"]
-    if "--draws" in words:
-        words[words.index("--draws") + 1] = "2"
-    result = CliRunner().invoke(app, words)
+@pytest.mark.parametrize("snippet", blocks("toml"))
+def test_the_toml_is_part_of_a_scene(snippet, desk):
+    table = {"title": "a snippet", "vehicle": "sauvc_auv"} | tomllib.loads(snippet)
+    scene_from_table(table, folder=desk)
+
+
+@pytest.mark.usefixtures("desk")
+@pytest.mark.parametrize("line", command_lines())
+def test_the_command_lines_are_understood(line):
+    program, *words = shlex.split(line, comments=True)
+    if program.startswith("scripts/"):
+        assert os.access(ROOT / program, os.X_OK), program
+    elif program == ".venv/bin/python":
+        assert (ROOT / words[0]).exists(), words[0]
+    elif program == "pip":
+        extras = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"][
+            "optional-dependencies"
+        ]
+        assert re.fullmatch(r"(?:buoyancy_mj|\.)\[(\w+)\]", words[-1])[1] in extras
+    else:
+        assert program.removeprefix(".venv/bin/") == "buoyancy-mj", line
+        understand(*words)
+
+
+def understand(command, *words):
+    """Run a command, shortened, or only parse it where it opens a window or takes minutes."""
+    commands = typer.main.get_command(app).commands
+    if all(word.startswith("--") for word in words) and command not in (
+        "list",
+        "paper",
+        "validate",
+    ):
+        # a command and its flags, named in a sentence
+        known = {flag for parameter in commands[command].params for flag in parameter.opts}
+        assert set(words) <= known | {"--help"}
+        return
+    parsed = commands[command].make_context(command, list(words))
+    if command in ("paper", "validate"):
+        # a wrong name lists the right ones
+        listed = CliRunner().invoke(app, [command, "--only", "none"]).output
+        assert set(parsed.params["only"] or ()) <= set(re.findall(r"\w+", listed))
+        return
+    if command == "view":
+        return
+    if command == "run":
+        words = [word for word in words if word != "--live"] + ["--duration", "0.05"]
+    elif command == "sweep":
+        words = [re.sub(r":\d$", ":1", word) for word in words] + ["--duration", "0.02"]
+        if "--draws" in words:
+            words[words.index("--draws") + 1] = "2"
+    result = CliRunner().invoke(app, [command, *words])
     assert result.exit_code == 0, result.output
-    assert "0 failed" in result.output
+    assert command != "sweep" or "0 failed" in result.output
 
 
-@pytest.mark.parametrize("line", re.findall(r"\.venv/bin/buoyancy-mj (run .*)", README))
-def test_the_command_lines_are_understood(line, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    vehicle = catalog.models()["hourglass"]
-    words = shlex.split(line, comments=True)
-    words = [
-        word.replace("path/to/my_vehicle.xml", str(vehicle)) for word in words if word != "--live"
-    ]
-    result = CliRunner().invoke(app, [*words, "--duration", "0.05"])
-    assert result.exit_code == 0, result.output
+@pytest.mark.parametrize("page", PAGES)
+def test_every_link_and_picture_is_there(page):
+    for target, _, anchor in re.findall(r"\]\((?!http)([^)#]*)(#([^)]*))?\)", PAGES[page]):
+        file = ((ROOT / page).parent / target).resolve() if target else ROOT / page
+        if file.parent == GENERATED:
+            continue  # the site's own test follows these
+        assert file.exists(), target
+        if anchor:
+            assert anchor in anchors(file.read_text()), f"{target}#{anchor}"
 
 
-@pytest.mark.parametrize(
-    "line", re.findall(r"\.venv/bin/buoyancy-mj ((?:inspect|ballast) .*)", README)
-)
-def test_the_inspections_are_understood(line, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    words = shlex.split(line, comments=True)
-    words = [
-        word.replace("path/to/my_vehicle.xml", str(catalog.models()["sauvc_auv"])) for word in words
-    ]
-    result = CliRunner().invoke(app, words)
-    assert result.exit_code == 0, result.output
+def anchors(text):
+    """The anchors of a page's headings."""
+    titles = re.findall(r"^#+ (.*)", text, re.MULTILINE)
+    return {re.sub(r"\s+", "-", re.sub(r"[^\w\s-]", "", title.lower()).strip()) for title in titles}
 
 
-def test_every_file_and_picture_named_is_there():
-    for name in re.findall(r"\]\((?!http)([^)]+)\)", README):
+@pytest.mark.parametrize("page", PAGES)
+def test_every_file_and_every_name_in_the_text_exists(page):
+    for name in re.findall(
+        r"`((?:scripts|tests|models|scenes|docs|buoyancy_mj)/[\w./-]*)", PAGES[page]
+    ):
         assert (ROOT / name).exists(), name
-    for name in ("scripts/demo", "scripts/test", "scripts/bench.py"):
+    for name in re.findall(rf"`((?:{'|'.join(ROOMS)})\.\w[\w.]*)", PAGES[page]):
+        resolve(name)
+
+
+def resolve(name):
+    """A module of the package, or what stands in one."""
+    module, parts = buoyancy_mj, name.split(".")
+    while parts:
+        dotted = f"{module.__name__}.{parts[0]}"
+        if importlib.util.find_spec(dotted) is None:
+            break
+        module = importlib.import_module(dotted)
+        parts = parts[1:]
+        if not hasattr(module, "__path__"):
+            break
+    item = module
+    for part in parts:
+        item = getattr(item, part)
+    return item
+
+
+def test_the_first_page_is_short_and_names_the_scripts():
+    assert README.count("\n") <= 150
+    for name in ("scripts/demo", "scripts/test", "scripts/bench.py", "scripts/docs"):
         assert name in README
-        assert (ROOT / name).exists()
 
 
-def test_every_room_stands_in_the_import_contract_and_on_the_list_of_the_readme():
-    contract = (ROOT / "pyproject.toml").read_text()
-    rooms = [
-        path.stem for path in (ROOT / "buoyancy_mj").iterdir() if not path.name.startswith("__")
-    ]
-    assert len(rooms) > 10
-    for room in rooms:
-        assert f'"buoyancy_mj.{room}' in contract or f"| buoyancy_mj.{room}" in contract, room
-        assert re.search(rf"^    (\w+, )?{room}\b", README, re.MULTILINE), room
+def test_every_room_stands_in_the_import_contract():
+    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]
+    (layers,) = (each["layers"] for each in settings["contracts"] if each["type"] == "layers")
+    placed = {word.split(".")[-1] for layer in layers for word in layer.split(" | ")}
+    assert len(ROOMS) > 10
+    assert placed - {"__main__"} == set(ROOMS)
+
+
+def test_the_house_on_the_page_is_the_house():
+    house = script("draw_house")
+    rooms = house.read_rooms()
+    assert {room.name for room in rooms} == set(ROOMS)
+    assert house.table(rooms) in PAGES["docs/architecture.md"]
+
+
+def test_each_room_imports_what_it_says_and_no_more():
+    for room in script("draw_house").read_rooms():
+        assert room.imports <= room.may_import, room.name
+
+
+def test_an_undocumented_public_name_is_found():
+    griffe = pytest.importorskip("griffe", reason="the extra 'docs' is not installed")
+    pytest.importorskip("mkdocs", reason="the extra 'docs' is not installed")
+    code = 'class Ship:\n    """It floats."""\n    draft: float\n    beam: float\n    """[m]."""\n'
+    module = griffe.visit("yard", ROOT / "yard.py", code)
+    assert [*script("site_pages").undocumented(module["Ship"])] == ["yard.Ship.draft"]
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_a_broken_link_and_asks_nothing_of_the_network(tmp_path):
+    for module in ("latex2mathml", "material", "mkdocstrings"):
+        pytest.importorskip(module, reason="the extra 'docs' is not installed")
+    command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", str(tmp_path)]
+    environment = os.environ | {"NO_MKDOCS_2_WARNING": "1", "PYTHONPATH": str(ROOT)}
+    built = subprocess.run(
+        command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False
+    )
+    assert built.returncode == 0, built.stdout + built.stderr
+    pages = {path: path.read_text() for path in tmp_path.rglob("*.html")}
+    for name, text in pages.items():
+        assert not re.findall(
+            r"<(?:script|link|img|iframe)[^>]+(?:src|href)=.?https?:[^>]*", text
+        ), name
+        assert 'class="arithmatex"' not in text, name
+    for name, item in vars(buoyancy_mj).items():
+        if hasattr(item, "__doc__") and getattr(item, "__module__", "").startswith("buoyancy_mj."):
+            assert any(f'id="buoyancy_mj.{name}"' in text for text in pages.values()), name

@@ -2,5 +2,5 @@
 
 In: a model, a water and its options; then the engine's arrays, pass by pass.
 Out: generalized forces in `qfrc_passive`, added mass in `M`, and `Loads` for whoever asks.
-May import: settings, loads, submersion, hulls, sea, kernels, errors.
+May import: settings, loads, submersion, hulls, sea, kernels, errors, records.
 """

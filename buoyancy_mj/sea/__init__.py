@@ -1,4 +1,4 @@
-"""The sea: waves, spectra, currents, and the water that they move in.
+"""The sea: waves, spectra, currents, and water.
 
 In: heights, periods, directions, spectra, currents by depth or by time.
 Out: elevation, velocity, acceleration and pressure at any point and time.
