@@ -51,7 +51,7 @@ from buoyancy_mj.meshes import tree  # fmt: skip
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.statics.balance import find_balance
-from buoyancy_mj.statics.vessel import build_vessel
+from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.submersion import exact
 from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.viz.recording import Recording

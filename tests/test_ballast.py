@@ -64,7 +64,7 @@ def test_level_ballast_is_what_archimedes_says():
 
 def test_a_vessel_that_is_right_needs_nothing():
     result = ballast(raft().compile(), draft=0.15)
-    assert result.placed == ()
+    assert result.items == ()
     assert result.mass == 0.0
 
 
@@ -76,7 +76,7 @@ def test_neutral_with_a_wanted_bg_is_reached_by_the_lowest_ballast():
     assert pytest.approx(0.2, rel=2e-3) == found.BG
     assert found.GMt == pytest.approx(found.BG, rel=1e-9)
     # the keel hangs outside, so it displaces: lead of 11340 kg/m^3
-    keel = next(one for one in result.placed if one.name == "keel")
+    keel = next(one for one in result.items if one.name == "keel")
     assert keel.displaces
     assert keel.radius == pytest.approx((keel.mass / 11340 * 3 / (4 * math.pi)) ** (1 / 3))
     total = 1.2 + keel.mass / 11340
@@ -98,7 +98,7 @@ def test_foam_lifts_what_is_too_heavy_and_displaces_its_own_volume():
     model = put(spec, result)
     found = hydrostatics(model, qpos=[0, 0, -5, 1, 0, 0, 0])
     assert found.reserve == pytest.approx(0.0, abs=2e-3 * 1300)
-    (foam,) = result.placed
+    (foam,) = result.items
     assert (foam.kind, foam.name) == ("foam", "foam_top")
     # 100 kg to lift: V (1000 - 150) = 100
     assert foam.mass == pytest.approx(100.0 / 850.0 * 150.0, rel=1e-9)
@@ -108,7 +108,7 @@ def test_inside_a_box_one_mass_does_it():
     spec = raft(RAFT.replace('pos="0 0 .6"', 'pos=".1 .05 .6"'))
     box = [[-0.9, -0.45, -0.28], [0.9, 0.45, -0.2]]
     result = ballast(spec.compile(), draft=0.25, heel=0.05, trim=0.02, masses=box)
-    (mass,) = result.placed
+    (mass,) = result.items
     assert mass.name == "box"
     assert (mass.position >= box[0]).all()
     assert (mass.position <= box[1]).all()
@@ -264,6 +264,6 @@ def test_masses_and_their_moments_add_up():
     model = put(spec, result)
     data = mujoco.MjData(model)
     mujoco.mj_forward(model, data)
-    expected = sum(one.mass * one.position for one in result.placed) / (300.0 + result.mass)
+    expected = sum(one.mass * one.position for one in result.items) / (300.0 + result.mass)
     assert data.subtree_com[1] == pytest.approx(expected, abs=1e-9)
     assert np.allclose(result.hydrostatics.mass_matrix[0, 0], 300.0 + result.mass)

@@ -21,7 +21,7 @@ from buoyancy_mj import (
     repair,
 )
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.vessel import build_vessel
+from buoyancy_mj.statics.building import build_vessel
 from tests import naive, vessels
 
 

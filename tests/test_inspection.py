@@ -21,10 +21,11 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.cli import app
 from buoyancy_mj.inspection.inspection import inspect_model
-from buoyancy_mj.inspection.report import sections, to_json, to_markdown
+from buoyancy_mj.inspection.json_report import to_json
+from buoyancy_mj.inspection.report import sections, to_markdown
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.curves import compute_draft_curves, waterlines
-from buoyancy_mj.statics.vessel import build_vessel
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
 from tests import vessels
 
 HEAVY_BELOW = '<inertial pos=".1 0 -.1" mass="400" diaginertia="9 9 9"/>'
@@ -50,7 +51,7 @@ def mesh_model(vertices, faces, mass=20.0, **arguments):
 
 def only(model, **choice):
     """What floats of a model with one vehicle."""
-    (floating,) = inspect_model(model, **choice).floating
+    (floating,) = inspect_model(model, **choice).vessels
     return floating
 
 
@@ -99,7 +100,7 @@ def test_what_hangs_on_joints_is_weighed():
 
 def test_density_of_the_water_counts():
     assert only(vessels.box(mass=1201.3)).sentence.startswith("sinks")
-    (floating,) = inspect_model(vessels.box(mass=1201.3), Water(density=1025.0)).floating
+    (floating,) = inspect_model(vessels.box(mass=1201.3), Water(density=1025.0)).vessels
     assert floating.sentence.startswith("floats: 28.7 kg reserve")
 
 
@@ -111,7 +112,7 @@ def test_each_body_is_weighed_and_the_whole():
         </worldbody></mujoco>"""
     )
     found = only(model)
-    shares = {share.body: share for share in found.shares}
+    shares = {share.body: share for share in found.bodies}
     assert set(shares) == {"rov", "arm"}  # the cover moves with the arm
     assert shares["rov"].reserve == pytest.approx(4.0)
     assert shares["arm"].reserve == pytest.approx(1.008 - 3.5)
@@ -158,7 +159,7 @@ def test_a_slip_of_units_is_told():
 def doctor(vertices, faces):
     """The part, and all that the report says of meshes."""
     found = inspect_model(mesh_model(vertices, faces))
-    (part,) = found.parts
+    (part,) = found.geoms
     text = "\n".join(note for section in sections(found) for note in section.notes)
     return part, text
 
@@ -210,20 +211,20 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="tub", name="tub")
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.1], pos=[0, 0, -1], name="keel")
     found = inspect_model(spec.compile())
-    tub, keel = found.parts
+    tub, keel = found.geoms
     assert tub.displaces
     assert tub.mesh is None
     assert keel.mesh is not None
     (problem,) = found.problems
     assert "mesh 'tub' of geom 'tub': it is open: 1 hole(s) with 4 edges" in problem
     assert "take its convex hull (--hull convex), or leave the geom out (--geoms)" in problem
-    (floating,) = found.floating
-    assert floating.total.displaced == pytest.approx(8.0)
+    (floating,) = found.vessels
+    assert floating.total.displacement == pytest.approx(8.0)
     # as its convex hull it displaces
     convex = inspect_model(spec.compile(), selection=Selection(hull="tub=convex"))
     assert convex.problems == ()
-    assert convex.parts[0].convex
-    assert convex.floating[0].total.displaced == pytest.approx(72.0, rel=1e-6)
+    assert convex.geoms[0].convex
+    assert convex.vessels[0].total.displacement == pytest.approx(72.0, rel=1e-6)
 
 
 def test_what_does_not_displace_says_why():
@@ -232,7 +233,7 @@ def test_what_does_not_displace_says_why():
         <body name="boat"><freejoint/><geom name="hull" type="box" size=".5 .5 .5" mass="9"/>
         <geom name="paint" type="box" size=".6 .5 .5" contype="0" conaffinity="0" mass="0"/></body></worldbody></mujoco>"""
     )
-    reasons = {part.name: part.reason for part in inspect_model(model).parts}
+    reasons = {part.name: part.reason for part in inspect_model(model).geoms}
     assert reasons == {
         "floor": "a plane bounds no volume",
         "rock": "its body cannot move",
@@ -240,7 +241,7 @@ def test_what_does_not_displace_says_why():
         "paint": "visual; its body has collision geoms",
     }
     assert {
-        p.name: p.displaces for p in inspect_model(model, selection=Selection(geoms="paint")).parts
+        p.name: p.displaces for p in inspect_model(model, selection=Selection(geoms="paint")).geoms
     }["hull"] is False
 
 
@@ -255,7 +256,7 @@ def test_overlaps_between_bodies_are_told():
     assert (one, two) == ("one", "two")
     assert volume == pytest.approx(0.1)
     # and count twice
-    assert found.floating[0].total.displaced == pytest.approx(2000.0)
+    assert found.vessels[0].total.displacement == pytest.approx(2000.0)
 
 
 # lines
@@ -263,13 +264,13 @@ def test_overlaps_between_bodies_are_told():
 
 def test_draft_curves_end_with_the_whole_volume_and_waterlines_close():
     vessel = build_vessel(vessels.of_mesh(vessels.dented(2), 400.0))
-    curves = compute_draft_curves(vessel, np.eye(3), 41)
+    curves = compute_hydrostatic_curves(vessel, np.eye(3), 41)
     assert curves.volume[-1] == pytest.approx(vessel.volume, rel=1e-4)
     assert (np.diff(curves.volume) > 0.0).all()
     # the waterplane is the slope of the volume
     summed = cumulative_trapezoid(curves.waterplane_area, curves.draft, initial=0.0)
     assert curves.volume == pytest.approx(summed, abs=2e-3 * vessel.volume)
-    segments = waterlines(vessel, np.eye(3), curves.draft[20])
+    segments = compute_waterline(vessel, np.eye(3), curves.draft[20])
     ends = np.round(segments.reshape(-1, 2), 9)
     assert (np.unique(ends, axis=0, return_counts=True)[1] == 2).all()
     area = shapely.polygonize(list(shapely.linestrings(np.round(segments, 9)))).area
@@ -297,7 +298,7 @@ def test_the_report_is_markdown_and_json():
 
 def test_centroids_are_in_the_frame_of_the_body():
     model = vessels.of_mesh(vessels.dented(4).transformed(np.eye(3), (1.0, 2.0, 3.0)), 400.0)
-    (part,) = inspect_model(model).parts
+    (part,) = inspect_model(model).geoms
     assert part.centroid == pytest.approx(vessels.dented(4).centroid + [1.0, 2.0, 3.0], abs=1e-6)
 
 

@@ -9,9 +9,9 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import BuoyancyWarning, EquilibriumError, ModelError, Water, righting_arm
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.balance import find_draft
-from buoyancy_mj.statics.hydrostatics import hydrostatics_of
-from buoyancy_mj.statics.vessel import build_vessel
+from buoyancy_mj.statics.balance import find_heave_balance
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.hydrostatics import compute_hydrostatics
 from tests import naive, vessels
 
 DEGREES = np.radians([10.0, 20.0, 25.0, 35.0, 45.0, 60.0, 90.0, 120.0])
@@ -46,7 +46,7 @@ def test_the_initial_slope_is_the_metacentric_height(axis, name):
     model = vessels.of_mesh(mesh, 500.0 * mesh.volume, mesh.centroid + [0, 0, -0.1])
     small = 1e-4
     found = righting_arm(model, heel=[-small, 0.0, small], axis=axis, trim="fixed")
-    upright = hydrostatics_of(find_draft(build_vessel(model), np.eye(3)))
+    upright = compute_hydrostatics(find_heave_balance(build_vessel(model), np.eye(3)))
     assert (found.gz[2] - found.gz[0]) / (2 * small) == pytest.approx(
         getattr(upright, name), rel=1e-5
     )
@@ -71,7 +71,7 @@ def test_with_free_trim_no_torque_is_left_across(seed):
     assert np.abs(found.trim).max() > 1e-3
     vessel = build_vessel(model)
     for heel, trim, gz in zip(found.heel, found.trim, found.gz, strict=True):
-        pose = find_draft(vessel, Rotation.from_euler("YX", [trim, heel]).as_matrix())
+        pose = find_heave_balance(vessel, Rotation.from_euler("YX", [trim, heel]).as_matrix())
         assert pose.arm[:2] == pytest.approx([0.0, -gz], abs=1e-9)
 
 
@@ -83,7 +83,7 @@ def test_the_area_is_the_work_that_heels_it(trim):
     found = righting_arm(model, heel=np.radians(np.arange(0, 60.25, 0.25)), trim=trim)
     vessel = build_vessel(model)
     ends = [
-        find_draft(
+        find_heave_balance(
             vessel, Rotation.from_euler("YX", [found.trim[i], found.heel[i]]).as_matrix()
         ).energy
         / vessel.weight

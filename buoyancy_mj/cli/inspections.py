@@ -23,7 +23,7 @@ from buoyancy_mj.cli.common import (
 from buoyancy_mj.errors import ModelError, SceneError
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.hulls.selection import Selection
-from buoyancy_mj.inspection import report
+from buoyancy_mj.inspection import json_report, report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import compile_spec, read_vehicle
@@ -74,7 +74,7 @@ def inspect_(
         selection = Selection(geoms=geoms, hull=hull, fill=fill)
         found = inspect_model(whole, _water(water), selection=selection, title=path.stem)
     if as_json:
-        print(json.dumps(report.to_json(found), indent=2, allow_nan=False))
+        print(json.dumps(json_report.to_json(found), indent=2, allow_nan=False))
     else:
         out.print(report.to_tables(found))
     # what is written is told on the standard error, lest it stand in the JSON
@@ -92,7 +92,7 @@ def inspect_(
         )
     if repair is not None:
         _repair(spec, whole, found, repair)
-    if any(part.displaces and part.mesh is None for part in found.parts):
+    if any(part.displaces and part.mesh is None for part in found.geoms):
         raise typer.Exit(1)
 
 
@@ -135,7 +135,7 @@ def ballast_(
         masses=[box[:3], box[3:]] if box is not None else masses or "ballast*", foam=foam or "foam*",
         selection=Selection(geoms=geoms, hull=hull, fill=fill),
     )  # fmt: skip
-    for one in found.placed:
+    for one in found.items:
         x, y, z = one.position.round(6) + 0.0
         out.print(
             f"{one.label}: {one.mass:.4g} kg of {one.kind} at ({x:.4g}, {y:.4g}, {z:.4g}) m",
@@ -188,7 +188,7 @@ def _plotted(found: Inspection, folder: Path) -> Path:
 def _repair(spec: mujoco.MjSpec, model: mujoco.MjModel, found: Inspection, path: Path) -> None:
     """Write the model with what could be mended."""
     mended = {}
-    for part, geom in zip(found.parts, range(model.ngeom), strict=True):
+    for part, geom in zip(found.geoms, range(model.ngeom), strict=True):
         was = part.diagnosis
         if was is not None and was.mesh is not None and was.repaired:
             asset = int(model.geom_dataid[geom])

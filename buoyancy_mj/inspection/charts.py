@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from buoyancy_mj.inspection.inspection import Floating, Inspection
-from buoyancy_mj.statics.curves import compute_draft_curves, waterlines
+from buoyancy_mj.inspection.inspection import Inspection, VesselInspection
+from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
 from buoyancy_mj.statics.vessel import Vessel
 
 
@@ -17,7 +17,7 @@ def draw_charts(found: Inspection, folder: Path) -> list[tuple[str, Path]]:
     """Draw all that floats, as PNG files in a folder; what each shows, and where it is."""
     files = []
     with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
-        for floating in found.floating:
+        for floating in found.vessels:
             name = floating.total.body
             stem = name.replace("/", "-").replace(" ", "_")
             for kind, caption, figure in _figures(floating):
@@ -27,7 +27,7 @@ def draw_charts(found: Inspection, folder: Path) -> list[tuple[str, Path]]:
     return files
 
 
-def _figures(floating: Floating) -> Iterator[tuple[str, str, Figure]]:
+def _figures(floating: VesselInspection) -> Iterator[tuple[str, str, Figure]]:
     """What can be drawn."""
     rotation = floating.at_rest.rotation
     draft = None if floating.rest is None else floating.rest.hydrostatics.draft
@@ -42,7 +42,7 @@ def _figures(floating: Floating) -> Iterator[tuple[str, str, Figure]]:
 
 
 def _curves(vessel: Vessel, rotation: NDArray[np.float64], draft: float | None) -> Figure:
-    curves = compute_draft_curves(vessel, rotation)
+    curves = compute_hydrostatic_curves(vessel, rotation)
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")
     axes = figure.subplots()
     axes.plot(1e3 * curves.volume, curves.draft, color="C0")
@@ -67,10 +67,10 @@ def _waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float | No
     levels = [(part * tall, 0.8) for part in np.linspace(0.1, 0.9, 9)]
     colours = matplotlib.colormaps["viridis"]
     for level, width in levels:
-        for segment in waterlines(vessel, rotation, level):
+        for segment in compute_waterline(vessel, rotation, level):
             axes.plot(*segment.T, color=colours(level / tall), linewidth=width)
     if draft is not None and 0.0 < draft < tall:
-        for segment in waterlines(vessel, rotation, draft):
+        for segment in compute_waterline(vessel, rotation, draft):
             axes.plot(*segment.T, color="C3", linewidth=1.8)
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")
@@ -82,7 +82,7 @@ def _waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float | No
     return figure
 
 
-def _gz(floating: Floating) -> Figure:
+def _gz(floating: VesselInspection) -> Figure:
     arm = floating.righting
     assert arm is not None
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")

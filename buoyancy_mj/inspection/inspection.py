@@ -27,10 +27,11 @@ from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.shapes import convex_hull
 from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.balance import NEUTRAL, find_draft
-from buoyancy_mj.statics.equilibrium import Equilibrium, find_rest, find_stable_rests
-from buoyancy_mj.statics.righting import RightingArm, curve
-from buoyancy_mj.statics.vessel import PLAUSIBLE, Vessel, build_vessel_from_hulls
+from buoyancy_mj.statics.balance import NEUTRAL, find_heave_balance
+from buoyancy_mj.statics.building import build_vessel_from_hulls
+from buoyancy_mj.statics.equilibrium import Equilibrium, find_equilibria, find_equilibrium
+from buoyancy_mj.statics.righting import RightingArm, compute_righting_arm
+from buoyancy_mj.statics.vessel import PLAUSIBLE, Vessel
 
 LEVELLED = 1e-4
 """Fall of energy, over weight times radius, below which a vessel rests as drawn."""
@@ -41,7 +42,7 @@ _STANDARD = 1000.0
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Part:
+class GeomInspection:
     """A geom, whether it displaces water, and its mesh."""
 
     name: str
@@ -69,14 +70,14 @@ class Part:
 
 
 @dataclasses.dataclass(frozen=True)
-class Share:
+class BuoyancyBudget:
     """What one body weighs and displaces."""
 
     body: str
     """Its name."""
     mass: float
     """[kg]."""
-    displaced: float
+    displacement: float
     """Mass of the water that it displaces fully submerged [kg]."""
     gravity: float
     """[m/s^2]."""
@@ -84,7 +85,7 @@ class Share:
     @property
     def reserve(self) -> float:
         """How much it could carry [kg], negative where it is too heavy."""
-        return self.displaced - self.mass
+        return self.displacement - self.mass
 
     @property
     def lift(self) -> float:
@@ -93,12 +94,12 @@ class Share:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class Floating:
+class VesselInspection:
     """What floats together, whether it does, and how."""
 
     vessel: Vessel
     """Where the model has it."""
-    shares: tuple[Share, ...]
+    bodies: tuple[BuoyancyBudget, ...]
     """Of each of its bodies that weighs or displaces."""
     sentence: str
     """What a person wants to know."""
@@ -117,21 +118,23 @@ class Floating:
         return self.vessel if self.rest is None else _at(self.vessel, self.rest)
 
     @property
-    def total(self) -> Share:
+    def total(self) -> BuoyancyBudget:
         """Of all its bodies."""
         vessel = self.vessel
         name = body_name(vessel.model, vessel.root)
-        return Share(name, vessel.mass, vessel.water.density * vessel.volume, vessel.gravity)
+        return BuoyancyBudget(
+            name, vessel.mass, vessel.water.density * vessel.volume, vessel.gravity
+        )
 
     @property
     def centre_of_gravity(self) -> NDArray[np.float64]:
         """In the frame of its root body (3,) [m]."""
-        return self.vessel.root_from_vessel
+        return self.vessel.centre_of_gravity
 
     @property
     def centre_of_buoyancy(self) -> NDArray[np.float64]:
         """Fully submerged, in the frame of its root body (3,) [m]."""
-        return self.vessel.root_from_vessel + self.vessel.centroid
+        return self.vessel.centre_of_gravity + self.vessel.centroid
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -142,11 +145,11 @@ class Inspection:
     """What it is called."""
     water: Water
     """The water it was inspect_model in."""
-    parts: tuple[Part, ...]
+    geoms: tuple[GeomInspection, ...]
     """Its geoms."""
     overlaps: tuple[tuple[str, str, float], ...]
     """Pairs of hulls of different bodies that overlap, and the volume counted twice [m^3]."""
-    floating: tuple[Floating, ...]
+    vessels: tuple[VesselInspection, ...]
     """What floats together."""
     problems: tuple[str, ...]
     """Why a part or the whole cannot be put to sea, with the mend."""
@@ -213,7 +216,7 @@ def _part(
     convex: bool,
     fills: dict[int, float],
     problems: list[str],
-) -> Part:
+) -> GeomInspection:
     """A geom as it was found."""
     geom = verdict.geom
     mesh, found, notes = None, None, []
@@ -240,7 +243,7 @@ def _part(
         turn = np.empty(9)
         mujoco.mju_quat2Mat(turn, model.geom_quat[geom])
         centroid = turn.reshape(3, 3) @ mesh.centroid + model.geom_pos[geom]
-    return Part(
+    return GeomInspection(
         name=geom_name(model, geom),
         body=body_name(model, int(model.geom_bodyid[geom])),
         kind=geom_kind(model, geom),
@@ -290,7 +293,7 @@ def _overlaps(model: mujoco.MjModel, hulls: Sequence[Hull]) -> tuple[tuple[str, 
     return tuple(found)
 
 
-def _floating(vessel: Vessel, hulls: Sequence[Hull]) -> Floating:
+def _floating(vessel: Vessel, hulls: Sequence[Hull]) -> VesselInspection:
     """Whether a vessel floats, and how."""
     notes = _doubts(vessel)
     surplus = vessel.water.density * vessel.volume - vessel.mass
@@ -299,17 +302,17 @@ def _floating(vessel: Vessel, hulls: Sequence[Hull]) -> Floating:
     righting: RightingArm | None = None
     if vessel.free and surplus >= -NEUTRAL * vessel.mass:
         try:
-            found, all_found = find_rest(vessel), find_stable_rests(vessel)
+            found, all_found = find_equilibrium(vessel), find_equilibria(vessel)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", BuoyancyWarning)
-                righting = curve(
+                righting = compute_righting_arm(
                     vessel, np.radians(np.arange(181.0)), upright=_at(vessel, found).rotation
                 )
             notes += [str(entry.message) for entry in caught]
         except BuoyancyError as error:
             notes.append(str(error))
     shares = _shares(vessel, hulls)
-    return Floating(
+    return VesselInspection(
         vessel, shares, _sentence(vessel, surplus, found), found, all_found, righting, tuple(notes)
     )
 
@@ -339,7 +342,7 @@ def _sentence(vessel: Vessel, surplus: float, found: Equilibrium | None) -> str:
     lean = math.degrees(math.acos(max(-1.0, min(1.0, math.cos(at.heel) * math.cos(at.trim)))))
     drawn = vessel.rotation[2] @ _at(vessel, found).rotation[2]
     # a ball rests as well as drawn
-    drop = find_draft(vessel, vessel.rotation).energy - found.energy
+    drop = find_heave_balance(vessel, vessel.rotation).energy - found.energy
     if drop < LEVELLED * vessel.weight * vessel.radius:
         return f"floats: {surplus:.3g} kg reserve, draft {at.draft:.3g} m, {found.stability}, GM {at.GM:.3g} m"
     tipped = "" if drawn > math.cos(math.radians(5.0)) else ", not as drawn"
@@ -365,7 +368,7 @@ def _doubts(vessel: Vessel) -> list[str]:
     return notes
 
 
-def _shares(vessel: Vessel, hulls: Sequence[Hull]) -> tuple[Share, ...]:
+def _shares(vessel: Vessel, hulls: Sequence[Hull]) -> tuple[BuoyancyBudget, ...]:
     """What its bodies weigh and displace; a body without joints counts with the one it moves with."""
     model = vessel.model
     tree = np.flatnonzero(model.body_rootid == vessel.root)
@@ -375,7 +378,7 @@ def _shares(vessel: Vessel, hulls: Sequence[Hull]) -> tuple[Share, ...]:
         volume = sum(hull.displaced_volume for hull in hulls if hull.body == body)
         if mass > 0.0 or volume > 0.0:
             shares.append(
-                Share(
+                BuoyancyBudget(
                     body_name(model, int(body)), mass, vessel.water.density * volume, vessel.gravity
                 )
             )

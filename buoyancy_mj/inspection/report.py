@@ -12,7 +12,12 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from buoyancy_mj.inspection.inspection import Floating, Inspection, Part, Share
+from buoyancy_mj.inspection.inspection import (
+    BuoyancyBudget,
+    GeomInspection,
+    Inspection,
+    VesselInspection,
+)
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.statics.equilibrium import Equilibrium
 from buoyancy_mj.statics.righting import RightingArm
@@ -35,7 +40,7 @@ class Section:
 def sections(found: Inspection) -> tuple[Section, ...]:
     """All there is to tell, in the order in which a person asks."""
     result = [_what_displaces(found)]
-    meshes = [(part, part.diagnosis) for part in found.parts if part.diagnosis is not None]
+    meshes = [(part, part.diagnosis) for part in found.geoms if part.diagnosis is not None]
     if meshes:
         result.append(_meshes(meshes))
     if found.overlaps:
@@ -43,7 +48,7 @@ def sections(found: Inspection) -> tuple[Section, ...]:
         result.append(
             Section("Overlaps between bodies", ("hull", "hull", "litres counted twice"), rows)
         )
-    for floating in found.floating:
+    for floating in found.vessels:
         result += _floats(floating)
     if found.problems:
         result.append(Section("Problems", (), (), found.problems))
@@ -95,26 +100,12 @@ def to_markdown(found: Inspection, pictures: Sequence[tuple[str, str]] = ()) -> 
     return "\n".join(lines)
 
 
-def to_json(found: Inspection) -> dict[str, Any]:
-    """The report as plain values for JSON: SI units, angles in radians, null for what is not a finite number."""
-    return {
-        "title": found.title,
-        "water": {"density": found.water.density, "level": found.water.level},
-        "geoms": [_plain_part(part) for part in found.parts],
-        "overlaps": [
-            {"hulls": [one, two], "volume": _value(volume)} for one, two, volume in found.overlaps
-        ],
-        "floating": [_plain_floating(floating) for floating in found.floating],
-        "problems": list(found.problems),
-    }
-
-
 # sections
 
 
 def _what_displaces(found: Inspection) -> Section:
     rows = []
-    for part in found.parts:
+    for part in found.geoms:
         shape = "convex hull" if part.convex else part.kind
         verdict = "yes" if part.mesh is not None else "refused" if part.displaces else "no"
         size = ("", "", "")
@@ -138,7 +129,7 @@ def _what_displaces(found: Inspection) -> Section:
     return Section(f"{found.title}: what displaces water", tuple(header[i] for i in kept), cells)
 
 
-def _meshes(meshes: Sequence[tuple[Part, Diagnosis]]) -> Section:
+def _meshes(meshes: Sequence[tuple[GeomInspection, Diagnosis]]) -> Section:
     alike: dict[tuple[str, ...], list[str]] = {}
     for part, mesh in meshes:
         size = " x ".join(_number(side) for side in mesh.extents)
@@ -186,11 +177,13 @@ def _state(mesh: Diagnosis) -> str:
     return ", ".join(words)
 
 
-def _floats(floating: Floating) -> list[Section]:
+def _floats(floating: VesselInspection) -> list[Section]:
     total = floating.total
-    shares: list[Share] = [*floating.shares, total] if len(floating.shares) > 1 else [total]
+    shares: list[BuoyancyBudget] = (
+        [*floating.bodies, total] if len(floating.bodies) > 1 else [total]
+    )
     rows = [
-        (share.body + (", all" if share is total and len(shares) > 1 else ""), _number(share.mass), _number(share.displaced),
+        (share.body + (", all" if share is total and len(shares) > 1 else ""), _number(share.mass), _number(share.displacement),
          f"{share.reserve:+.4g}", f"{share.lift:+.4g}") for share in shares
     ]  # fmt: skip
     header = ("body", "mass [kg]", "displaces [kg]", "reserve [kg]", "net lift [N]")
@@ -278,91 +271,6 @@ def _righting(arm: RightingArm) -> Section:
         *((f"'{name}' goes under", _angle(at), "degrees") for name, at in arm.immersed.items()),
     ]
     return Section("Righting arm from there, trim free", (), tuple(rows))
-
-
-# plain values
-
-
-def _plain_part(part: Part) -> dict[str, Any]:
-    mesh, found = part.mesh, part.diagnosis
-    result: dict[str, Any] = {
-        "name": part.name,
-        "body": part.body,
-        "kind": part.kind,
-        "displaces": mesh is not None,
-        "reason": part.reason,
-        "hull": "convex" if part.convex else "mesh",
-        "fill": part.fill,
-        "notes": list(part.notes),
-    }
-    if mesh is not None:
-        result |= {
-            "volume": mesh.volume,
-            "area": mesh.area,
-            "centroid": mesh.centroid.tolist(),
-            "triangles": len(mesh.faces),
-        }
-    if found is not None:
-        fields = {
-            field.name: getattr(found, field.name)
-            for field in dataclasses.fields(found)
-            if field.name not in ("mesh", "holes", "name")
-        }
-        result["mesh"] = fields | {"holes": [dataclasses.asdict(hole) for hole in found.holes]}
-    return result
-
-
-def _plain_floating(floating: Floating) -> dict[str, Any]:
-    total = floating.total
-    return {
-        "body": total.body,
-        "sentence": floating.sentence,
-        "mass": total.mass,
-        "displaced": total.displaced,
-        "reserve": total.reserve,
-        "lift": total.lift,
-        "centre_of_gravity": _value(floating.centre_of_gravity),
-        "centre_of_buoyancy": _value(floating.centre_of_buoyancy),
-        "bodies": [
-            dataclasses.asdict(share) | {"reserve": share.reserve} for share in floating.shares
-        ],
-        "rest": None if floating.rest is None else _plain_rest(floating.rest),
-        "rests": [_plain_rest(one) for one in floating.rests],
-        "righting": None
-        if floating.righting is None
-        else {
-            name.name: _value(getattr(floating.righting, name.name))
-            for name in dataclasses.fields(floating.righting)
-        },
-        "notes": list(floating.notes),
-    }
-
-
-def _plain_rest(found: Equilibrium) -> dict[str, Any]:
-    at = found.hydrostatics
-    names = [field.name for field in dataclasses.fields(at)]
-    derived = (
-        "displacement", "reserve", "draft", "KB", "KG", "BG", "BMt", "BMl", "KMt", "KMl", "GMt", "GMl", "GM",
-    )  # fmt: skip
-    return {
-        "qpos": _value(found.qpos),
-        "stability": found.stability,
-        "eigenvalues": _value(found.eigenvalues),
-        "energy": _value(found.energy),
-        "hydrostatics": {name: _value(getattr(at, name)) for name in (*names, *derived)}
-        | {"natural_periods": _value(at.natural_periods())},
-    }
-
-
-def _value(value: Any) -> Any:
-    """Numbers as JSON knows them."""
-    if isinstance(value, dict):
-        return {name: _value(one) for name, one in value.items()}
-    if isinstance(value, np.ndarray):
-        return [_value(one) for one in value.tolist()]
-    if isinstance(value, list):
-        return [_value(one) for one in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 # cells

@@ -25,8 +25,8 @@ from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.loads.coefficients import state_coefficients
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import EQUILIBRIUM, INTEGRATORS, Scene, Start
-from buoyancy_mj.statics.equilibrium import find_rest
-from buoyancy_mj.statics.vessel import build_vessel
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.equilibrium import find_equilibrium
 
 ENVIRONMENT = "environment/"
 """What the names of the environment start with in a joined model; the vehicle's stay as they are."""
@@ -264,4 +264,4 @@ def _settle(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: in
     for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
         name = body_name(model, root)
         vessel = build_vessel(model, scene.water, data.qpos, body=name, selection=scene.selection)
-        data.qpos[:] = find_rest(vessel).qpos
+        data.qpos[:] = find_equilibrium(vessel).qpos

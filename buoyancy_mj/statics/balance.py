@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError
 from buoyancy_mj.hulls.selection import body_name
-from buoyancy_mj.statics.vessel import Afloat, Vessel
+from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.vessel import Vessel
 
 NEUTRAL = 1e-6
 """Part of its mass by which a vessel that hovers may differ from its water: MuJoCo keeps vertices in single precision."""
@@ -19,9 +20,9 @@ STRIDE = 0.1
 _STEPS, _LONGEST = 200, 0.5
 
 
-def find_draft(
+def find_heave_balance(
     vessel: Vessel, rotation: NDArray[np.float64], height: float | None = None
-) -> Afloat:
+) -> FloatingPose:
     """The vessel turned by world_from_vessel (3, 3), at the height at which it displaces its mass.
 
     One that weighs just what it displaces stays where it is, or as much deeper as it takes to be under water.
@@ -41,16 +42,16 @@ def find_draft(
     if surplus <= NEUTRAL * vessel.mass:
         _refuse_to_sink(vessel, surplus)
         top = float((vessel.points @ rotation[2]).max())
-        return vessel.at([*vessel.position[:2], min(z, level - top)], rotation)
+        return pose_vessel(vessel, [*vessel.position[:2], min(z, level - top)], rotation)
     z = z if low < z < high else level
     while True:
-        afloat = vessel.at([*vessel.position[:2], z], rotation)
+        afloat = pose_vessel(vessel, [*vessel.position[:2], z], rotation)
         excess = afloat.volume - wanted
         low, high = (z, high) if excess > 0.0 else (low, z)
         if abs(excess) <= 1e-14 * vessel.volume:
             return afloat
         # Newton by the waterplane, halving where that leads out
-        area = afloat.waterplane[0]
+        area = afloat.waterplane.area
         z = z + excess / area if area > 0.0 else math.inf
         if not low < z < high:
             z = 0.5 * (low + high)
@@ -65,7 +66,7 @@ def find_balance(
     *,
     free: NDArray[np.float64] | None = None,
     stable: bool = True,
-) -> tuple[Afloat, int]:
+) -> tuple[FloatingPose, int]:
     """Where the torques vanish at the draft that carries the weight, and the steps in attitude that it took.
 
     At that draft the energy is weight times the height of G over B, a smooth function of attitude
@@ -83,14 +84,12 @@ def find_balance(
         EquilibriumError: it sinks; or no balance was found.
     """
     basis = np.eye(2) if free is None else free
-    afloat = find_draft(vessel, rotation, height)
+    afloat = find_heave_balance(vessel, rotation, height)
     scale = vessel.weight * vessel.radius
     reach = _LONGEST
     for count in range(_STEPS):
         torque = basis.T @ afloat.force[1:]
-        values, vectors = np.linalg.eigh(
-            basis.T @ stiffness_at_constant_displacement(afloat) @ basis
-        )
+        values, vectors = np.linalg.eigh(basis.T @ tilt_stiffness(afloat) @ basis)
         axes = basis @ vectors
         if np.linalg.norm(torque) <= BALANCED * scale:
             lower = _downhill(afloat, values, axes) if stable else None
@@ -99,7 +98,7 @@ def find_balance(
             afloat = lower
             continue
         step = _step(values, vectors.T @ torque, 1e-9 * scale, reach, downhill=stable)
-        trial = rotate(afloat, axes @ step)
+        trial = tilt(afloat, axes @ step)
         if _better(trial, afloat, basis, stable=stable):
             reach = min(2.0 * reach, _LONGEST)
             afloat = trial
@@ -117,13 +116,13 @@ def find_balance(
     )
 
 
-def rotate(afloat: Afloat, turn: NDArray[np.float64]) -> Afloat:
+def tilt(afloat: FloatingPose, turn: NDArray[np.float64]) -> FloatingPose:
     """Turned about horizontal axes by (2,) [rad], at the draft that carries its weight."""
     rotation = Rotation.from_rotvec([*turn, 0.0]).as_matrix() @ afloat.rotation
-    return find_draft(afloat.vessel, rotation, float(afloat.position[2]))
+    return find_heave_balance(afloat.vessel, rotation, float(afloat.position[2]))
 
 
-def stiffness_at_constant_displacement(afloat: Afloat) -> NDArray[np.float64]:
+def tilt_stiffness(afloat: FloatingPose) -> NDArray[np.float64]:
     """Restoring torques per turn about x and y (2, 2) [N m], the draft following so that the volume stays."""
     whole = afloat.stiffness
     heave = whole[0, 0]
@@ -142,14 +141,14 @@ def _refuse_to_sink(vessel: Vessel, surplus: float) -> None:
 
 
 def _downhill(
-    afloat: Afloat, values: NDArray[np.float64], axes: NDArray[np.float64]
-) -> Afloat | None:
+    afloat: FloatingPose, values: NDArray[np.float64], axes: NDArray[np.float64]
+) -> FloatingPose | None:
     """A lower pose beside a summit, a saddle, or where the curvature tells nothing; None at the bottom."""
     scale = afloat.vessel.weight * afloat.vessel.radius
     if values[0] >= 1e-6 * scale:
         return None
     ways = (way * part * STRIDE for part in (1.0, 0.1, 0.01) for way in (1.0, -1.0))
-    poses = (rotate(afloat, way * axes[:, 0]) for way in ways)
+    poses = (tilt(afloat, way * axes[:, 0]) for way in ways)
     return next((pose for pose in poses if pose.energy < afloat.energy - 1e-10 * scale), None)
 
 
@@ -168,7 +167,9 @@ def _step(
     return step * (reach / length) if length > reach else step
 
 
-def _better(trial: Afloat, afloat: Afloat, basis: NDArray[np.float64], *, stable: bool) -> bool:
+def _better(
+    trial: FloatingPose, afloat: FloatingPose, basis: NDArray[np.float64], *, stable: bool
+) -> bool:
     """Whether a step is to be taken."""
     less = bool(
         np.linalg.norm(basis.T @ trial.force[1:]) < np.linalg.norm(basis.T @ afloat.force[1:])

@@ -16,9 +16,17 @@ from buoyancy_mj.hulls.selection import GEOMS, Selection, body_name
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.ballast_sites import LEAST, BallastSite, find_sites, solve_least_ballast
-from buoyancy_mj.statics.hydrostatics import Hydrostatics, attitude, hydrostatics_of
-from buoyancy_mj.statics.vessel import Afloat, Vessel, build_vessel
+from buoyancy_mj.statics.attitude import Attitude
+from buoyancy_mj.statics.ballast_sites import (
+    LEAST,
+    BallastSite,
+    find_ballast_sites,
+    find_least_masses,
+)
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
+from buoyancy_mj.statics.vessel import Vessel, VesselHull
 
 LEAD, FOAM = 11_340.0, 200.0
 """Densities [kg/m^3] of what is added, unless said otherwise: lead, and closed-cell PVC foam as used under water."""
@@ -58,7 +66,7 @@ class BallastItem:
 class Ballast:
     """What to add to a vessel, and what becomes of it."""
 
-    placed: tuple[BallastItem, ...]
+    items: tuple[BallastItem, ...]
     """Each thing added; none where the vessel is right as it is."""
     hydrostatics: Hydrostatics
     """Of the vessel with all that, at the wanted draft and attitude."""
@@ -68,7 +76,7 @@ class Ballast:
     @property
     def mass(self) -> float:
         """All that is added [kg]."""
-        return sum(one.mass for one in self.placed)
+        return sum(one.mass for one in self.items)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
         """Add all that to a model that is not yet compiled: the same vehicle's, as bodies of the root body.
@@ -81,7 +89,7 @@ class Ballast:
             raise ModelError(
                 f"there is no body '{self.root}' to carry the ballast; {choices(self.root, bodies)}"
             )
-        for one in self.placed:
+        for one in self.items:
             name = one.label
             if name in bodies:
                 raise ModelError(
@@ -169,19 +177,21 @@ def ballast(
     vessel = build_vessel(model, water, start, body=body, selection=selection)
     pose = _wanted(vessel, draft, heel, trim)
     # foam that lifts less than it weighs there is none
-    lifting = [place for place in find_sites(pose, "foam", foam, foam_density) if place.lift > 1.0]
-    places = [*find_sites(pose, "ballast", masses, mass_density), *lifting]
-    placed = _merged(vessel, places, solve_least_ballast(pose, places, reserve or 0.0, bg))
+    lifting = [
+        place for place in find_ballast_sites(pose, "foam", foam, foam_density) if place.lift > 1.0
+    ]
+    places = [*find_ballast_sites(pose, "ballast", masses, mass_density), *lifting]
+    placed = _merged(vessel, places, find_least_masses(pose, places, reserve or 0.0, bg))
     after = _ballasted(vessel, placed)
-    moved = pose.position + pose.rotation @ (after.root_from_vessel - vessel.root_from_vessel)
-    result = hydrostatics_of(after.at(moved, pose.rotation))
+    moved = pose.position + pose.rotation @ (after.centre_of_gravity - vessel.centre_of_gravity)
+    result = compute_hydrostatics(pose_vessel(after, moved, pose.rotation))
     _check(after, result, reserve or 0.0, len(vessel.meshes))
     return Ballast(placed, result, body_name(model, vessel.root))
 
 
-def _wanted(vessel: Vessel, draft: float | None, heel: float, trim: float) -> Afloat:
+def _wanted(vessel: Vessel, draft: float | None, heel: float, trim: float) -> FloatingPose:
     """The vessel as it is, where it is wanted."""
-    heading = attitude(vessel.rotation)[0]
+    heading = Attitude.from_matrix(vessel.rotation).heading
     turn = Rotation.from_euler("ZYX", [heading, trim, heel]).as_matrix()
     heights = vessel.points @ turn[2]
     low, high = float(heights.min()), float(heights.max())
@@ -194,7 +204,7 @@ def _wanted(vessel: Vessel, draft: float | None, heel: float, trim: float) -> Af
             f"a draft of {draft:g} m is wanted of hulls {high - low:.4g} m tall at this attitude; it must be above 0 and at "
             "most that, or ask for a reserve of 0 to be neutral under water"
         )
-    return vessel.at([*vessel.position[:2], height], turn)
+    return pose_vessel(vessel, [*vessel.position[:2], height], turn)
 
 
 def _merged(
@@ -212,7 +222,7 @@ def _merged(
         if mass > LEAST * vessel.mass:
             middle = sum((share / mass * place.point for place, share in own), np.zeros(3))
             first = own[0][0]
-            at = middle + vessel.root_from_vessel
+            at = middle + vessel.centre_of_gravity
             result.append(BallastItem(kind, name, at, float(mass), first.density, first.displaces))
     return tuple(result)
 
@@ -220,7 +230,7 @@ def _merged(
 def _ballasted(vessel: Vessel, placed: Sequence[BallastItem]) -> Vessel:
     """The vessel with all that."""
     mass = vessel.mass + sum(one.mass for one in placed)
-    points = [one.position - vessel.root_from_vessel for one in placed]
+    points = [one.position - vessel.centre_of_gravity for one in placed]
     shift = (
         sum((one.mass * point for one, point in zip(placed, points, strict=True)), np.zeros(3))
         / mass
@@ -235,14 +245,15 @@ def _ballasted(vessel: Vessel, placed: Sequence[BallastItem]) -> Vessel:
         vessel,
         mass=mass,
         inertia=inertia,
-        root_from_vessel=vessel.root_from_vessel + shift,
+        centre_of_gravity=vessel.centre_of_gravity + shift,
         position=vessel.position + vessel.rotation @ shift,
-        names=(*vessel.names, *(one.label for one, _ in balls)),
-        bodies=(*vessel.bodies, *(vessel.root for _ in balls)),
-        solids=(*vessel.solids, *(shapes.sphere(one.radius) for one, _ in balls)),
-        places=np.array([*vessel.places, *(point for _, point in balls)]) - shift,
-        turns=np.array([*vessel.turns, *(np.eye(3) for _ in balls)]),
-        fills=np.append(vessel.fills, np.ones(len(balls))),
+        hulls=(
+            *(dataclasses.replace(hull, position=hull.position - shift) for hull in vessel.hulls),
+            *(
+                VesselHull(one.label, shapes.sphere(one.radius), point - shift, np.eye(3), 1.0)
+                for one, point in balls
+            ),
+        ),
         sites={name: at - shift for name, at in vessel.sites.items()},
     )
 
@@ -270,7 +281,7 @@ def _check(vessel: Vessel, found: Hydrostatics, reserve: float, before: int) -> 
             stacklevel=3,
         )
     for i, j in find_close_pairs(vessel.meshes):
-        pair = vessel.names[i], vessel.names[j]
+        pair = vessel.hulls[i].name, vessel.hulls[j].name
         if max(i, j) >= before and vessel.fills[i] == vessel.fills[j] == 1.0:
             solids = to_manifold(*vessel.meshes[i].compact), to_manifold(*vessel.meshes[j].compact)
             common = (solids[0] ^ solids[1]).volume() if solids[0] and solids[1] else 0.0

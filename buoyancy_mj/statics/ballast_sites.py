@@ -11,7 +11,8 @@ from scipy.optimize import OptimizeResult, linprog
 
 from buoyancy_mj.errors import BallastError, ModelError, choices
 from buoyancy_mj.meshes.surface import winding_number
-from buoyancy_mj.statics.vessel import Afloat, Vessel
+from buoyancy_mj.statics.floating_pose import FloatingPose
+from buoyancy_mj.statics.vessel import Vessel
 
 LEAST = 1e-6
 """Part of the mass of the vessel below which nothing is added."""
@@ -31,8 +32,8 @@ class BallastSite:
     """Mass of water displaced there for each kilogram added, at the wanted pose."""
 
 
-def find_sites(
-    pose: Afloat, kind: str, where: str | Sequence[str] | ArrayLike, density: float
+def find_ballast_sites(
+    pose: FloatingPose, kind: str, where: str | Sequence[str] | ArrayLike, density: float
 ) -> list[BallastSite]:
     """The sites that match, or the corners of a box."""
     vessel = pose.vessel
@@ -54,13 +55,13 @@ def find_sites(
         raise ModelError(
             f"a box for {kind} is {box.tolist()}; it must be its lowest and highest corner (2, 3) [m]"
         )
-    middle = box.mean(axis=0) - vessel.root_from_vessel
-    corners = np.array(np.meshgrid(*box.T)).reshape(3, -1).T - vessel.root_from_vessel
+    middle = box.mean(axis=0) - vessel.centre_of_gravity
+    corners = np.array(np.meshgrid(*box.T)).reshape(3, -1).T - vessel.centre_of_gravity
     return [_place(pose, kind, "box", corner, middle, density) for corner in corners]
 
 
 def _place(
-    pose: Afloat,
+    pose: FloatingPose,
     kind: str,
     name: str,
     point: NDArray[np.float64],
@@ -70,8 +71,8 @@ def _place(
     """A place, in or out of the hulls as `middle` is."""
     vessel = pose.vessel
     inside = [
-        (float(fill), hull)
-        for fill, hull, mesh in zip(vessel.fills, vessel.names, vessel.meshes, strict=True)
+        (hull.fill, hull.name)
+        for hull, mesh in zip(vessel.hulls, vessel.meshes, strict=True)
         if (np.abs(middle - mesh.bounds.mean(axis=0)) <= 0.5 * mesh.extents).all()
         and winding_number(mesh.vertices, mesh.faces, middle) > 0.5
     ]
@@ -91,8 +92,8 @@ def _place(
     )
 
 
-def solve_least_ballast(
-    pose: Afloat, places: Sequence[BallastSite], reserve: float, bg: float | None
+def find_least_masses(
+    pose: FloatingPose, places: Sequence[BallastSite], reserve: float, bg: float | None
 ) -> NDArray[np.float64]:
     """The least masses at the places (n,) [kg]."""
     vessel = pose.vessel

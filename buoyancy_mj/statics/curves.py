@@ -6,11 +6,12 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from buoyancy_mj.statics.floating_pose import pose_vessel
 from buoyancy_mj.statics.vessel import Vessel
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
-class DraftCurves:
+class HydrostaticCurves:
     """How a vessel fills out with its draft, at one attitude."""
 
     draft: NDArray[np.float64]
@@ -21,9 +22,9 @@ class DraftCurves:
     """Areas cut out of the surface (n,) [m^2]."""
 
 
-def compute_draft_curves(
+def compute_hydrostatic_curves(
     vessel: Vessel, rotation: NDArray[np.float64], count: int = 101
-) -> DraftCurves:
+) -> HydrostaticCurves:
     """Volume and waterplane area from touching the water to being under it.
 
     Args:
@@ -35,13 +36,18 @@ def compute_draft_curves(
     low, high = float(heights.min()), float(heights.max())
     # just off the ends, where flat faces lie in the surface
     drafts = (high - low) * np.linspace(1e-6, 1.0 - 1e-6, count)
-    poses = [vessel.at([0.0, 0.0, vessel.water.level - draft - low], rotation) for draft in drafts]
-    return DraftCurves(
-        drafts, np.array([p.volume for p in poses]), np.array([p.waterplane[0] for p in poses])
+    poses = [
+        pose_vessel(vessel, [0.0, 0.0, vessel.water.level - draft - low], rotation)
+        for draft in drafts
+    ]
+    return HydrostaticCurves(
+        drafts, np.array([p.volume for p in poses]), np.array([p.waterplane.area for p in poses])
     )
 
 
-def waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float) -> NDArray[np.float64]:
+def compute_waterline(
+    vessel: Vessel, rotation: NDArray[np.float64], draft: float
+) -> NDArray[np.float64]:
     """Segments (n, 2, 2) [m] of the waterline at a draft, seen from above, from the centre of gravity."""
     height = float((vessel.points @ rotation[2]).min()) + draft
     cuts = [

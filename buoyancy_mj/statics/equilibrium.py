@@ -12,14 +12,17 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.statics.attitude import Attitude
 from buoyancy_mj.statics.balance import (
     STRIDE,
     find_balance,
-    rotate,
-    stiffness_at_constant_displacement,
+    tilt,
+    tilt_stiffness,
 )
-from buoyancy_mj.statics.hydrostatics import Hydrostatics, attitude, hydrostatics_of
-from buoyancy_mj.statics.vessel import Afloat, Vessel, build_vessel
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
+from buoyancy_mj.statics.vessel import Vessel
 
 INDIFFERENT = 1e-3
 """Part of the largest eigenvalue below which nothing restores worth the name: a period thirty times the shortest."""
@@ -81,7 +84,7 @@ def equilibrium(
         ModelError: see `statics.build_vessel`; or nothing of it is free to float.
         MeshError: a mesh that bounds no volume.
     """
-    return find_rest(
+    return find_equilibrium(
         build_vessel(model, water, start, body=body, selection=selection), stable=stable
     )
 
@@ -112,19 +115,19 @@ def equilibria(
         ModelError: see `statics.build_vessel`; or nothing of it is free to float.
         MeshError: a mesh that bounds no volume.
     """
-    return find_stable_rests(build_vessel(model, water, start, body=body, selection=selection))
+    return find_equilibria(build_vessel(model, water, start, body=body, selection=selection))
 
 
-def find_rest(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
+def find_equilibrium(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
     """The pose in which a vessel comes to rest from where it is, see `equilibrium`."""
     afloat, steps = find_balance(vessel, vessel.rotation, stable=stable)
     return _equilibrium(afloat, steps)
 
 
-def find_stable_rests(vessel: Vessel) -> tuple[Equilibrium, ...]:
+def find_equilibria(vessel: Vessel) -> tuple[Equilibrium, ...]:
     """All poses in which a vessel stays at rest, see `equilibrium`; those of lowest energy first."""
     found: list[Equilibrium] = []
-    kept: list[Afloat] = []
+    kept: list[FloatingPose] = []
     for down in trimesh.creation.icosphere(subdivisions=1).vertices:
         turn, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [down])
         afloat, steps = find_balance(vessel, turn.as_matrix())
@@ -135,20 +138,23 @@ def find_stable_rests(vessel: Vessel) -> tuple[Equilibrium, ...]:
     return tuple(sorted(found, key=lambda one: one.energy))
 
 
-def _equilibrium(afloat: Afloat, steps: int) -> Equilibrium:
+def _equilibrium(afloat: FloatingPose, steps: int) -> Equilibrium:
     """The result, its root body's place and heading those of the vessel."""
     vessel = afloat.vessel
-    heading = attitude(vessel.rotation)[0] - attitude(afloat.rotation)[0]
+    heading = (
+        Attitude.from_matrix(vessel.rotation).heading
+        - Attitude.from_matrix(afloat.rotation).heading
+    )
     turned = Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix() @ afloat.rotation
-    root = vessel.position - vessel.rotation @ vessel.root_from_vessel
-    place = root + turned @ vessel.root_from_vessel
+    root = vessel.position - vessel.rotation @ vessel.centre_of_gravity
+    place = root + turned @ vessel.centre_of_gravity
     place[2] = afloat.position[2]
-    final = vessel.at(place, turned)
-    found = hydrostatics_of(final)
+    final = pose_vessel(vessel, place, turned)
+    found = compute_hydrostatics(final)
     inverse = np.linalg.inv(np.linalg.cholesky(found.mass_matrix[2:5, 2:5]))
     restoring = found.stiffness[2:5, 2:5]
     return Equilibrium(
-        qpos=vessel.qpos_at(final),
+        qpos=vessel.qpos_at(final.position, final.rotation),
         hydrostatics=found,
         eigenvalues=np.asarray(
             np.linalg.eigvalsh(inverse @ (0.5 * (restoring + restoring.T)) @ inverse.T), float
@@ -158,14 +164,14 @@ def _equilibrium(afloat: Afloat, steps: int) -> Equilibrium:
     )
 
 
-def _same(one: Afloat, two: Afloat) -> bool:
+def _same(one: FloatingPose, two: FloatingPose) -> bool:
     """Whether two poses differ by heading alone, or by a roll without resistance, as of a log."""
     scale = one.vessel.weight * one.vessel.radius
     if abs(one.energy - two.energy) > LEVEL * scale:
         return False
     if _angle(one, two) < 1e-4:
         return True
-    soft, stiff = np.linalg.eigvalsh(stiffness_at_constant_displacement(one))
+    soft, stiff = np.linalg.eigvalsh(tilt_stiffness(one))
     if stiff < SOFT * scale:
         return True
     return bool(soft < SOFT * stiff) and any(
@@ -175,24 +181,24 @@ def _same(one: Afloat, two: Afloat) -> bool:
     )
 
 
-def _valley(afloat: Afloat, way: float) -> Iterator[Afloat]:
+def _valley(afloat: FloatingPose, way: float) -> Iterator[FloatingPose]:
     """Poses along the softest direction, the stiff one kept in balance, once round or until they rise."""
     base, scale = afloat.energy, afloat.vessel.weight * afloat.vessel.radius
-    axis = way * np.linalg.eigh(stiffness_at_constant_displacement(afloat))[1][:, 0]
+    axis = way * np.linalg.eigh(tilt_stiffness(afloat))[1][:, 0]
     for _ in range(math.ceil(2.0 * math.pi / STRIDE)):
-        afloat = rotate(afloat, STRIDE * axis)
+        afloat = tilt(afloat, STRIDE * axis)
         for _ in range(2):
-            values, axes = np.linalg.eigh(stiffness_at_constant_displacement(afloat))
+            values, axes = np.linalg.eigh(tilt_stiffness(afloat))
             stiff = axes[:, 1]
             if values[1] > 0.0:
-                afloat = rotate(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
+                afloat = tilt(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
         axis = axes[:, 0] * np.copysign(1.0, axes[:, 0] @ axis)
         yield afloat
         if afloat.energy > base + LEVEL * scale:
             return
 
 
-def _angle(one: Afloat, two: Afloat) -> float:
+def _angle(one: FloatingPose, two: FloatingPose) -> float:
     """Between what is down in two poses [rad]."""
     a, b = one.rotation[2], two.rotation[2]
     return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))

@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.vessel import Afloat, build_vessel
+from buoyancy_mj.statics.attitude import Attitude
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -198,20 +200,21 @@ def hydrostatics(
         MeshError: a mesh that bounds no volume.
     """
     vessel = build_vessel(model, water, qpos, body=body, selection=selection)
-    return hydrostatics_of(vessel.at(vessel.position, vessel.rotation))
+    return compute_hydrostatics(pose_vessel(vessel, vessel.position, vessel.rotation))
 
 
-def hydrostatics_of(afloat: Afloat) -> Hydrostatics:
+def compute_hydrostatics(afloat: FloatingPose) -> Hydrostatics:
     """Hydrostatics of a vessel in a pose."""
     vessel, turn = afloat.vessel, afloat.rotation
-    heading, trim, heel = attitude(turn)
+    heading, trim, heel = Attitude.from_matrix(turn)
     along = np.array([math.cos(heading), math.sin(heading)])
     axes = np.array([along, [-along[1], along[0]]])
-    area, *first = afloat.waterplane[:3].tolist()
-    xx, xy, yy = afloat.waterplane[3:]
+    area = afloat.waterplane.area
     has_one = area > 1e-12 * vessel.radius**2
-    middle = np.array(first) / area if has_one else np.full(2, math.nan)
-    second = np.array([[xx, xy], [xy, yy]]) - (area * np.outer(middle, middle) if has_one else 0.0)
+    middle = afloat.waterplane.first_moments / area if has_one else np.full(2, math.nan)
+    second = afloat.waterplane.second_moments - (
+        area * np.outer(middle, middle) if has_one else 0.0
+    )
     points = vessel.points @ turn.T
     length, beam = _extents(afloat, axes) if has_one else (0.0, 0.0)
     about = np.eye(3)
@@ -244,19 +247,8 @@ def hydrostatics_of(afloat: Afloat) -> Hydrostatics:
     )
 
 
-def attitude(rotation: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Heading, trim and heel [rad] of a rotation (3, 3): turned about z, then y, then x of the body."""
-    heading = math.atan2(rotation[1, 0], rotation[0, 0])
-    trim = -math.asin(max(-1.0, min(1.0, float(rotation[2, 0]))))
-    heel = math.atan2(rotation[2, 1], rotation[2, 2])
-    # where the bow points up or down heading and heel are one, and all of it is heel
-    if math.hypot(rotation[1, 0], rotation[0, 0]) < 1e-9:
-        return 0.0, trim, math.atan2(-rotation[1, 2], rotation[1, 1])
-    return heading, trim, heel
-
-
-def _stiffness(afloat: Afloat, axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """All of it (6, 6), in horizontal axes (2, 2): `Afloat.stiffness`, and how the moments turn with the heading."""
+def _stiffness(afloat: FloatingPose, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """All of it (6, 6), in horizontal axes (2, 2): `FloatingPose.stiffness`, and how the moments turn with the heading."""
     about = np.eye(3)
     about[1:, 1:] = axes
     whole = np.zeros((6, 6))
@@ -266,13 +258,13 @@ def _stiffness(afloat: Afloat, axes: NDArray[np.float64]) -> NDArray[np.float64]
     return whole
 
 
-def _extents(afloat: Afloat, axes: NDArray[np.float64]) -> tuple[float, float]:
+def _extents(afloat: FloatingPose, axes: NDArray[np.float64]) -> tuple[float, float]:
     """Length and beam of the waterline [m]."""
     about = np.eye(3)
     about[:2, :2] = axes
-    turned = afloat.vessel.at(afloat.position, about @ afloat.rotation)
-    low, high = turned.extents[:2], turned.extents[2:]
-    return float(high[0] - low[0]), float(high[1] - low[1])
+    turned = pose_vessel(afloat.vessel, afloat.position, about @ afloat.rotation)
+    length, beam = turned.waterplane.high - turned.waterplane.low
+    return float(length), float(beam)
 
 
 def _matrix(added_mass: ArrayLike | None) -> NDArray[np.float64]:

@@ -17,9 +17,11 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.balance import find_balance, find_draft
-from buoyancy_mj.statics.hydrostatics import attitude
-from buoyancy_mj.statics.vessel import Afloat, Vessel, build_vessel
+from buoyancy_mj.statics.attitude import Attitude
+from buoyancy_mj.statics.balance import find_balance, find_heave_balance
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.floating_pose import FloatingPose
+from buoyancy_mj.statics.vessel import Vessel
 
 POINTS = ("deck_edge*", "downflooding*")
 """Sites that are looked for without being asked."""
@@ -119,10 +121,10 @@ def righting_arm(
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
     vessel = build_vessel(model, water, start, body=body, selection=selection)
-    return curve(vessel, heels, axis=axis, free=trim == "free", points=points)
+    return compute_righting_arm(vessel, heels, axis=axis, free=trim == "free", points=points)
 
 
-def curve(
+def compute_righting_arm(
     vessel: Vessel,
     heels: NDArray[np.float64],
     *,
@@ -134,7 +136,7 @@ def curve(
     """The GZ curve of a vessel from where it is, or from `upright`, world_from_vessel (3, 3); see `righting_arm`."""
     heeled = _Heeled(vessel, vessel.rotation if upright is None else upright, axis, free)
     # outwards from the least, so that each trim is found from the one before
-    poses: dict[float, Afloat] = {}
+    poses: dict[float, FloatingPose] = {}
     for side in (heels[heels >= 0.0], heels[heels < 0.0][::-1]):
         last = None
         for angle in side.tolist():
@@ -177,18 +179,18 @@ class _Heeled:
         self, vessel: Vessel, upright: NDArray[np.float64], axis: float, free: bool
     ) -> None:
         self.vessel, self.free = vessel, free
-        heading = attitude(upright)[0] + axis
+        heading = Attitude.from_matrix(upright).heading + axis
         self.back = Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix()
         self.upright = self.back.T @ upright
         self.across = self.back[:2, 1:2].copy()
 
-    def __call__(self, heel: float, last: Afloat | None) -> Afloat:
+    def __call__(self, heel: float, last: FloatingPose | None) -> FloatingPose:
         """The vessel at a heel, its trim found from the last."""
         lean = 0.0 if last is None else self.trim(last)
         turn = self.back @ Rotation.from_euler("YX", [lean, heel]).as_matrix() @ self.upright
         height = None if last is None else float(last.position[2])
         if not self.free:
-            return find_draft(self.vessel, turn, height)
+            return find_heave_balance(self.vessel, turn, height)
         try:
             afloat, _ = find_balance(self.vessel, turn, height, free=self.across, stable=False)
         except EquilibriumError:
@@ -201,15 +203,15 @@ class _Heeled:
             )
         return afloat
 
-    def arm(self, afloat: Afloat) -> float:
+    def arm(self, afloat: FloatingPose) -> float:
         """The righting arm."""
         return -float(self.back[:2, 1] @ afloat.arm[:2])
 
-    def trim(self, afloat: Afloat) -> float:
+    def trim(self, afloat: FloatingPose) -> float:
         """Bow down, from that of the start [rad]."""
         return -math.asin(max(-1.0, min(1.0, float(self._turn(afloat)[2, 0]))))
 
-    def _turn(self, afloat: Afloat) -> NDArray[np.float64]:
+    def _turn(self, afloat: FloatingPose) -> NDArray[np.float64]:
         """From upright to here, in axes along and across (3, 3)."""
         return self.back.T @ afloat.rotation @ self.upright.T
 
@@ -218,7 +220,7 @@ def _vanishing(
     heeled: _Heeled,
     heels: NDArray[np.float64],
     gz: NDArray[np.float64],
-    poses: Sequence[Afloat],
+    poses: Sequence[FloatingPose],
     ahead: Sequence[int],
 ) -> float:
     """The first zero of the arm past its largest."""
@@ -237,12 +239,12 @@ def _immersed(
     heeled: _Heeled,
     site: NDArray[np.float64],
     heels: NDArray[np.float64],
-    poses: Sequence[Afloat],
+    poses: Sequence[FloatingPose],
     ahead: Sequence[int],
 ) -> float:
     """The least positive heel at which a site goes under."""
 
-    def height(pose: Afloat) -> float:
+    def height(pose: FloatingPose) -> float:
         return float(pose.position[2] + pose.rotation[2] @ site) - heeled.vessel.water.level
 
     for i in ahead:
@@ -254,7 +256,11 @@ def _immersed(
 
 
 def _root(
-    heeled: _Heeled, value: Callable[[Afloat], float], last: Afloat, low: float, high: float
+    heeled: _Heeled,
+    value: Callable[[FloatingPose], float],
+    last: FloatingPose,
+    low: float,
+    high: float,
 ) -> float:
     """The heel at which a value changes sign; the far end if rounding hides it."""
 

@@ -11,11 +11,11 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.inspection import report
-from buoyancy_mj.inspection.inspection import Floating, Inspection
+from buoyancy_mj.inspection.inspection import Inspection, VesselInspection
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.surface import to_manifold
-from buoyancy_mj.statics.curves import waterlines
+from buoyancy_mj.statics.curves import compute_waterline
 from buoyancy_mj.statics.vessel import Vessel
 from buoyancy_mj.viz.rrd import RrdFile
 
@@ -51,7 +51,7 @@ def record_inspection(found: Inspection, path: Path) -> Path:
         rr.TextDocument(report.to_markdown(found), media_type="text/markdown"),
         static=True,
     )
-    for floating in found.floating:
+    for floating in found.vessels:
         _log(stream, f"world/{rr.escape_entity_path_part(floating.total.body)}", floating)
     file.write()
     return file.close(complete=True)
@@ -60,7 +60,7 @@ def record_inspection(found: Inspection, path: Path) -> Path:
 def _blueprint(found: Inspection) -> rrb.Blueprint:
     """The vessel beside the report and the righting arms."""
     look_at, size = np.zeros(3), 1.0
-    for floating in found.floating[:1]:
+    for floating in found.vessels[:1]:
         vessel = floating.at_rest
         look_at, size = vessel.position, 2.0 * vessel.radius
     view = rrb.Spatial3DView(
@@ -75,7 +75,7 @@ def _blueprint(found: Inspection) -> rrb.Blueprint:
         ),
     )
     beside: list[Any] = [rrb.TextDocumentView(origin="report", name="report")]
-    if any(floating.righting is not None for floating in found.floating):
+    if any(floating.righting is not None for floating in found.vessels):
         beside.append(rrb.TimeSeriesView(origin="righting", name="GZ [m] over heel [degrees]"))
     return rrb.Blueprint(
         rrb.Horizontal(
@@ -87,16 +87,16 @@ def _blueprint(found: Inspection) -> rrb.Blueprint:
     )
 
 
-def _log(stream: rr.RecordingStream, entity: str, floating: Floating) -> None:
+def _log(stream: rr.RecordingStream, entity: str, floating: VesselInspection) -> None:
     """One vessel."""
     vessel = floating.at_rest
     level = vessel.water.level
     size = 2.0 * vessel.radius
-    for name, mesh, fill in zip(vessel.names, vessel.meshes, vessel.fills, strict=True):
+    for hull, mesh in zip(vessel.hulls, vessel.meshes, strict=True):
         placed = mesh.transformed(vessel.rotation, vessel.position)
         stream.log(
-            f"{entity}/hull/{rr.escape_entity_path_part(name)}",
-            _hull(placed, level, size, WET if fill == 1.0 else FLOODED),
+            f"{entity}/hull/{rr.escape_entity_path_part(hull.name)}",
+            _hull(placed, level, size, WET if hull.fill == 1.0 else FLOODED),
             static=True,
         )
     centre = np.array([*vessel.position[:2], level])
@@ -164,7 +164,7 @@ def _log_waterplane(
     stream: rr.RecordingStream, entity: str, vessel: Vessel, draft: float, size: float
 ) -> None:
     """The waterline, and what it encloses."""
-    lines = waterlines(vessel, vessel.rotation, draft)
+    lines = compute_waterline(vessel, vessel.rotation, draft)
     level = vessel.water.level
     segments = np.concatenate(
         [lines + vessel.position[:2], np.full((*lines.shape[:2], 1), level)], axis=-1

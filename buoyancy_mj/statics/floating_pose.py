@@ -1,0 +1,134 @@
+"""`FloatingPose`: a vessel in one pose on still water, with its weight and its buoyancy."""
+
+import dataclasses
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from buoyancy_mj.kernels import clip
+from buoyancy_mj.kernels.waterplane import AREA, EXTENTS, FIRST, SECOND
+from buoyancy_mj.statics.vessel import Vessel
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Waterplane:
+    """What the still surface cuts out of a vessel's hulls, seen from above.
+
+    Moments and extents count from the vessel's centre of gravity, along the world's axes.
+    """
+
+    area: float
+    """Area [m^2]; of flooded hulls, the part that displaces."""
+    first_moments: NDArray[np.float64]
+    """Integrals of x and y over the area (2,) [m^3]."""
+    second_moments: NDArray[np.float64]
+    """Integrals of x x, x y; x y, y y over the area (2, 2) [m^4]."""
+    low: NDArray[np.float64]
+    """Lowest x and y of the waterline (2,) [m]; inf without one."""
+    high: NDArray[np.float64]
+    """Highest x and y of the waterline (2,) [m]; -inf without one."""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class FloatingPose:
+    """A vessel in one pose on still water, in balance or not, submerged or in the air."""
+
+    vessel: Vessel
+    """The vessel."""
+    position: NDArray[np.float64]
+    """Centre of gravity (3,) [m], world frame."""
+    rotation: NDArray[np.float64]
+    """world_from_vessel (3, 3)."""
+    volume: float
+    """Submerged volume [m^3]."""
+    arm: NDArray[np.float64]
+    """From the centre of gravity to the centre of buoyancy (3,) [m], world axes; zero when dry."""
+    wetted_area: float
+    """Area under the surface [m^2]."""
+    waterplane: Waterplane
+    """What the surface cuts out of the hulls."""
+
+    @property
+    def draft(self) -> float:
+        """Depth of the lowest point of the hulls [m]; negative above the water."""
+        low, _ = self.vessel.heights(self.rotation)
+        return float(self.vessel.water.level - self.position[2] - low)
+
+    @property
+    def buoyancy(self) -> float:
+        """Upward force of the water [N]."""
+        return self.vessel.specific_weight * self.volume
+
+    @property
+    def energy(self) -> float:
+        """Potential energy of weight and buoyancy [J] over the level: `force` is minus its slope."""
+        height = self.position[2] - self.vessel.water.level
+        return float(self.vessel.weight * height - self.buoyancy * (height + self.arm[2]))
+
+    @property
+    def force(self) -> NDArray[np.float64]:
+        """Upward force [N] and torques about x and y [N m] (3,), which drive heave, roll and pitch.
+
+        Torques are about the centre of gravity, in the world's axes.
+        """
+        lift = self.buoyancy
+        return np.array([lift - self.vessel.weight, lift * self.arm[1], -lift * self.arm[0]])
+
+    @property
+    def torque(self) -> NDArray[np.float64]:
+        """Torques about x and y through the centre of gravity (2,) [N m]."""
+        return self.force[1:]
+
+    @property
+    def stiffness(self) -> NDArray[np.float64]:
+        """Restoring force and torques (3, 3) per heave [m] and turn about x and y [rad].
+
+        It is minus the derivative of `force`. With u the motion of the body, the derivative of an
+        integral of f over the wet volume is that of grad f . u, less f u_z over the waterplane
+        (Reynolds' transport theorem); f = 1, y, x give the matrix of Newman, Marine Hydrodynamics
+        (1977), sec. 6.16, with moments about the centre of gravity.
+        """
+        area = self.waterplane.area
+        x, y = self.waterplane.first_moments
+        (xx, xy), (_, yy) = self.waterplane.second_moments
+        lever = self.volume * self.arm[2]
+        return self.vessel.specific_weight * np.array(
+            [[area, y, -x], [y, yy + lever, -xy], [-x, -xy, xx + lever]]
+        )
+
+
+def pose_vessel(vessel: Vessel, position: ArrayLike, rotation: ArrayLike) -> FloatingPose:
+    """Put a vessel into a pose, and submerge it there.
+
+    Args:
+        vessel: the vessel.
+        position: of its centre of gravity (3,) [m], world frame.
+        rotation: world_from_vessel (3, 3).
+    """
+    origin = np.asarray(position, float)
+    turn = np.ascontiguousarray(rotation, float)
+    positions = origin + vessel.hull_positions @ turn.T
+    rotations = (turn @ vessel.hull_rotations).reshape(-1, 9)
+
+    # volume, and the way to its centroid
+    wet = vessel.packed.submerge(positions, rotations, 0.0)
+    volumes = wet[:, clip.VOLUME]
+    volume = float(volumes.sum())
+    arm = np.zeros(3)
+    if volume > 0.0:
+        held = volumes > 0.0
+        arm = volumes[held] @ (wet[held, clip.CENTROID] - origin) / volume
+    wetted_area = float(wet[:, clip.WETTED_AREA].sum())
+
+    # the waterplanes of all hulls as one
+    rows = vessel.packed.waterplanes(positions, rotations, origin)
+    xx, xy, yy = rows[:, SECOND].sum(axis=0)
+    extents = rows[:, EXTENTS].reshape(-1, 2, 2)
+    waterplane = Waterplane(
+        area=float(rows[:, AREA].sum()),
+        first_moments=rows[:, FIRST].sum(axis=0),
+        second_moments=np.array([[xx, xy], [xy, yy]]),
+        low=extents[:, 0].min(axis=0),
+        high=extents[:, 1].max(axis=0),
+    )
+    return FloatingPose(vessel, origin, turn, volume, arm, wetted_area, waterplane)
