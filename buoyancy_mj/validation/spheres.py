@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import RegularWave
 from buoyancy_mj.validation.case import Case, Row, amplitude, crossings, follow
@@ -60,7 +61,7 @@ def response(pressure: str) -> tuple[float, ...]:
 
 
 def _sphere(timestep: float = 0.01) -> mujoco.MjModel:
-    model = catalog.read_spec(catalog.models()["oes_sphere"]).compile()
+    model = read_spec(catalog.models()["oes_sphere"]).compile()
     model.opt.timestep, model.opt.integrator = timestep, mujoco.mjtIntegrator.mjINT_RK4
     return model
 

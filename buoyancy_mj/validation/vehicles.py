@@ -8,6 +8,7 @@ import numpy as np
 
 from buoyancy_mj.loads.added_mass import ellipsoid_added_mass
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.hydrostatics import hydrostatics
 from buoyancy_mj.validation.case import Case, Row, body, follow, numeric, period
@@ -21,7 +22,7 @@ FOSSEN = "Fossen 2021, *Handbook of Marine Craft Hydrodynamics and Motion Contro
 
 def _bluerov2(density: float, *, push: float = 0.0, dof: int = 2, duration: float = 40.0) -> float:
     """Its terminal speed [m/s] along an axis; pushed, it is held upright and straight, as by its autopilot."""
-    spec = catalog.read_spec(catalog.models()["bluerov2_heavy"])
+    spec = read_spec(catalog.models()["bluerov2_heavy"])
     spec.body("bluerov2_heavy").pos = [0.0, 0.0, -50.0]
     if push:
         for key in spec.keys:
@@ -85,7 +86,7 @@ def _speeds() -> Sequence[Row]:
         )
         for push, speed in ((10.0, 0.222), (40.0, 0.486), (100.0, 0.795))
     ]
-    model = catalog.read_spec(catalog.models()["bluerov2_heavy"]).compile()
+    model = read_spec(catalog.models()["bluerov2_heavy"]).compile()
     # undamped, each motion by itself
     found = hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0]).natural_periods(
         [6.36, 7.12, 18.68, 0.189, 0.135, 0.222]

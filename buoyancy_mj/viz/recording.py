@@ -18,7 +18,7 @@ from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.submersion.submerge import wetted_surface
 from buoyancy_mj.viz import plots
-from buoyancy_mj.viz.geoms import VisibleGeom, find_visible_geoms
+from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.viz.rrd import RrdFile
 
