@@ -50,6 +50,7 @@ from buoyancy_mj import (
 from buoyancy_mj.meshes import tree  # fmt: skip
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
+from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.submersion import exact
@@ -206,10 +207,10 @@ def scene_steps(name: str, *settings: str) -> dict[str, float]:
 def steps_of(scene: Scene) -> dict[str, float]:
     """Mean time of one step [s] over the whole of a scene, with its water (compiled) and without."""
     times = {}
-    for label, afloat in (("with", True), ("without", False)):
+    for label, with_water in (("with", True), ("without", False)):
         best = np.inf
         for _ in range(3):
-            model, data, _ = assemble(scene, afloat=afloat)
+            model, data, _ = assemble(scene, with_water=with_water)
             mujoco.mj_forward(model, data)
             steps = round(scene.duration / scene.timestep)
             started = time.perf_counter()
@@ -238,7 +239,7 @@ def seas(components: int) -> dict[str, dict[str, float]]:
 def batches(name: str, count: int) -> dict[str, float]:
     """Simulated over wall time of a batch of a scene's model, on one thread and on two."""
     scene = read_scene(catalog.scenes()[name])
-    model, data, _ = assemble(scene, afloat=True)
+    model, data, _ = assemble(scene, with_water=True)
     factors = {}
     for threads in (1, 2):
         many = batch.Batch(model, count, nthread=threads)
@@ -324,7 +325,7 @@ def vehicles(folder: Path) -> dict[str, Path]:
 
 def statics(path: Path, least: float) -> dict[str, float]:
     """Times [s] of what is asked of a vehicle at rest, everything included, and of a whole `inspect`."""
-    model = catalog.read_spec(path).compile()
+    model = read_spec(path).compile()
     vessel = build_vessel(model)
     times = {"triangles": float(sum(len(mesh.faces) for mesh in vessel.meshes))}
     starts = [

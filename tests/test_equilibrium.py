@@ -23,6 +23,7 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.specs import read_spec
 from tests import naive, vessels
 
 
@@ -243,7 +244,7 @@ def settled(model, start, seconds=60.0):
 
 def odd(name):
     if name in ("hourglass", "sauvc_auv"):
-        return catalog.read_spec(catalog.model_path(name)).compile()
+        return read_spec(catalog.model_path(name)).compile()
     if name == "dented":
         mesh = vessels.dented(12)
         return vessels.of_mesh(mesh, 450.0 * mesh.volume, mesh.centroid + [0.05, -0.03, -0.1])

@@ -138,7 +138,7 @@ FISH = """<mujoco><option gravity="{gravity}"><flag gravity="{flag}"/></option><
 def test_what_swims_without_gravity_weighs_in_water(tmp_path, gravity, flag, told):
     path = write(tmp_path, "fish.xml", FISH.format(gravity=gravity, flag=flag))
     found, notes = inspect_model(path)
-    assert f"the vehicle {told}; in water it weighs, by 0 0 -9.81" in notes
+    assert f"the vehicle {told}; water needs gravity, so it is 0 0 -9.81 here" in notes
     assert found["floating"][0]["sentence"].startswith("floats: 0.1")
     summary, notes = ran(path)
     assert told in notes

@@ -26,7 +26,8 @@ from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.inspection import json_report, report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.assembly import compile_spec, read_vehicle
+from buoyancy_mj.scenes.specs import compile_spec
+from buoyancy_mj.scenes.vehicles import read_vehicle
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.toml import water_from_table
 
@@ -83,7 +84,7 @@ def inspect_(
             f"plots and report: {quote(_plotted(found, plot))}", highlight=False, soft_wrap=True
         )
     if record is not None:
-        from buoyancy_mj.viz.inspection import record_inspection
+        from buoyancy_mj.viz.inspection_recording import record_inspection
 
         err.print(
             f"open the recording: {viewer_command()} {quote(record_inspection(found, record))}",

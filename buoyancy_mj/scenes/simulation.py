@@ -34,7 +34,7 @@ class Simulation(ReadOnly):
 
     def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.model, self.data, bodies = assemble(scene, afloat=True)
+        self.model, self.data, bodies = assemble(scene, with_water=True)
         # a diverging simulation is told, not set back to the start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import mujoco
 
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.hydrostatics import hydrostatics
 from buoyancy_mj.validation.case import Case, Row
@@ -12,7 +13,7 @@ from buoyancy_mj.validation.runs import follow
 
 
 def _load_spec() -> mujoco.MjSpec:
-    return catalog.read_spec(catalog.models()["bluerov2_heavy"])
+    return read_spec(catalog.models()["bluerov2_heavy"])
 
 
 def _compare() -> Sequence[Row]:

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import RegularWave
 from buoyancy_mj.validation.case import Case, Row
@@ -26,7 +27,7 @@ TASK_10 = (
 
 def _load_sphere(timestep: float = 0.01) -> mujoco.MjModel:
     """Load the sphere of 10 m that ships, with a timestep [s]."""
-    model = catalog.read_spec(catalog.models()["oes_sphere"]).compile()
+    model = read_spec(catalog.models()["oes_sphere"]).compile()
     model.opt.timestep = timestep
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
     return model

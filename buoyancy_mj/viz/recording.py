@@ -18,9 +18,9 @@ from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
 from buoyancy_mj.viz import plots
-from buoyancy_mj.viz.geoms import VisibleGeom, find_visible_geoms
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL, TIMELINE
 from buoyancy_mj.viz.rrd import RrdFile
+from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 
 SURFACE_CELLS = 24
 """Cells along each side of the water's surface."""

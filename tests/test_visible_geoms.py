@@ -2,7 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj.viz.geoms import find_visible_geoms
+from buoyancy_mj.viz.visible_geoms import find_visible_geoms
 
 MODEL = """
 <mujoco>

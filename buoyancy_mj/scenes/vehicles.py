@@ -1,0 +1,117 @@
+"""A vehicle's file, made ready for a scene: free, with gravity, without water and dry land."""
+
+import warnings
+from pathlib import Path
+
+import mujoco
+import numpy as np
+
+from buoyancy_mj.engine.callbacks import PLUGIN
+from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.scenes.specs import compile_spec, read_spec
+
+_PLANE = mujoco.mjtGeom.mjGEOM_PLANE
+_NO_GRAVITY = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
+_LEVEL_COSINE = 0.95
+"""Cosine of the slope up to which a plane counts as level ground."""
+
+
+def read_vehicle(path: Path) -> mujoco.MjSpec:
+    """Read a vehicle's file without compiling it, and make it ready for the water of a scene.
+
+    The vehicle gets a free joint if it has none, gravity if it is without, and loses the water that
+    its file brings.
+
+    Raises:
+        ModelError: MuJoCo refuses the file, or it has no body that could float.
+    """
+    spec = read_spec(path)
+    _add_free_joint(spec, path)
+    _turn_gravity_on(spec)
+    _remove_water(spec)
+    return spec
+
+
+def remove_dry_land(spec: mujoco.MjSpec, path: Path, level: float) -> None:
+    """Remove level ground of the vehicle's file that lies at the water's level [m] or above it.
+
+    Such ground would keep the water out.
+    """
+    planes = [geom for geom in spec.worldbody.geoms if geom.type == _PLANE]
+    if not planes:
+        return
+
+    # the compiler knows which way planes face, however that is written
+    model = compile_spec(spec.copy(), path)
+    indices = np.flatnonzero((model.geom_bodyid == 0) & (model.geom_type == _PLANE))
+    normal = np.empty(3)
+    for plane, geom in zip(planes, indices, strict=True):
+        mujoco.mju_rotVecQuat(normal, np.array([0.0, 0.0, 1.0]), model.geom_quat[geom])
+        height = model.geom_pos[geom, 2]
+        if normal[2] > _LEVEL_COSINE and height >= level - 1e-9:
+            warnings.warn(
+                f"the vehicle's ground plane '{plane.name}' at z = {height:g} m would keep out "
+                f"the water at {level:g} m and was left out",
+                BuoyancyWarning,
+                stacklevel=4,
+            )
+            spec.delete(plane)
+
+
+def _add_free_joint(spec: mujoco.MjSpec, path: Path) -> None:
+    """Add a free joint to the vehicle, unless one of its bodies moves on joints already."""
+    roots = [body for body in spec.worldbody.bodies if not body.mocap]
+    if not roots:
+        raise ModelError(
+            f"'{path}' has no body that could float; put the vehicle's geoms into a <body>"
+        )
+    if any(body.joints for body in roots):
+        return
+    if len(roots) > 1:
+        names = ", ".join(f"'{body.name}'" for body in roots)
+        raise ModelError(
+            f"'{path}' has {len(roots)} bodies without a joint ({names}); give the one that floats "
+            "a <freejoint/>"
+        )
+    (root,) = roots
+    root.add_freejoint()
+
+    # the root's joint comes first, and the keyframes of the fixed vehicle lack it
+    for key in spec.keys:
+        if len(key.qpos):
+            key.qpos = [*root.pos, *root.quat, *key.qpos]
+        if len(key.qvel):
+            key.qvel = [0.0] * 6 + list(key.qvel)
+
+
+def _turn_gravity_on(spec: mujoco.MjSpec) -> None:
+    """Turn gravity on: without it there is neither weight nor buoyancy."""
+    disabled = bool(spec.option.disableflags & _NO_GRAVITY)
+    if not disabled and np.any(spec.option.gravity):
+        return
+    cause = "disables gravity" if disabled else "sets gravity to 0 0 0"
+    spec.option.disableflags &= ~_NO_GRAVITY
+    if not np.any(spec.option.gravity):
+        spec.option.gravity = [0.0, 0.0, -9.81]
+    x, y, z = spec.option.gravity
+    warnings.warn(
+        f"the vehicle {cause}; water needs gravity, so it is {x:g} {y:g} {z:g} here",
+        BuoyancyWarning,
+        stacklevel=4,
+    )
+
+
+def _remove_water(spec: mujoco.MjSpec) -> None:
+    """Remove the water that the vehicle's file brings: the scene's takes its place."""
+    instances = [plugin for plugin in spec.plugins if plugin.plugin_name == PLUGIN]
+    names = [plugin.name for plugin in instances]
+    for body in spec.bodies:
+        if body.plugin.plugin_name == PLUGIN or body.plugin.name in names:
+            body.plugin.active = False
+    for plugin in instances:
+        warnings.warn(
+            f"the water '{plugin.name}' of the model gives way to the scene's",
+            BuoyancyWarning,
+            stacklevel=4,
+        )
+        spec.delete(plugin)
