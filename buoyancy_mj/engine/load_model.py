@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.kernels.entries.passive import Pressure
 from buoyancy_mj.loads.added_mass import AddedMass
-from buoyancy_mj.loads.drag import DampingArrays
+from buoyancy_mj.loads.damping_arrays import DampingArrays
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.methods import Packed
 

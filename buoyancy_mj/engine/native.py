@@ -20,7 +20,7 @@ from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels.entries import passive as kernel
 from buoyancy_mj.kernels.entries import plugin_hooks as entries
 from buoyancy_mj.kernels.entries.closures import Closure
-from buoyancy_mj.loads.drag import DampingArrays
+from buoyancy_mj.loads.damping_arrays import DampingArrays
 from buoyancy_mj.submersion.exact import PackedHulls
 
 THREADS = 64

@@ -7,7 +7,7 @@ from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.engine.native import Record
 from buoyancy_mj.kernels import damping, inertia, panels, wrenches
 from buoyancy_mj.kernels.entries.passive import Id, Pressure
-from buoyancy_mj.loads.drag import DampingArrays
+from buoyancy_mj.loads.damping_arrays import DampingArrays
 from buoyancy_mj.submersion.exact import PackedHulls
 
 

@@ -9,7 +9,8 @@ import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj.engine.callbacks import PLUGIN, skips_passive
+from buoyancy_mj.engine.checks import skips_passive
+from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.engine.native import pop_error
 from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import (
@@ -21,8 +22,8 @@ from buoyancy_mj.errors import (
     choices,
 )
 from buoyancy_mj.hulls.geoms import find_hulls
-from buoyancy_mj.hulls.selection import body_name
-from buoyancy_mj.loads.coefficients import state_coefficients
+from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.loads.coefficients import add_coefficients
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import EQUILIBRIUM, INTEGRATORS, Scene, Start
 from buoyancy_mj.statics.equilibrium import find_rest
@@ -56,7 +57,7 @@ def assemble(scene: Scene, *, afloat: bool = False) -> tuple[mujoco.MjModel, muj
     spec = read_vehicle(path)
     _leave_out_dry_land(spec, path, scene.water.level)
     if scene.coefficients is not None:
-        state_coefficients(spec, scene.coefficients.read(scene.folder))
+        add_coefficients(spec, scene.coefficients.read(scene.folder))
     bodies = len(spec.bodies)
     if scene.environment is not None:
         place = catalog.environment_path(scene.environment, scene.folder)

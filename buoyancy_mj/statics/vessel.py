@@ -11,8 +11,10 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.geoms import find_hulls
+from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import Selection, body_name
+from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
@@ -242,16 +244,7 @@ def build_vessel_from_hulls(
 ) -> Vessel:
     """A vessel of a model, with these hulls; see `build_vessel`."""
     sea = water or Water()
-    x, y, z = model.opt.gravity
-    if (
-        x != 0.0
-        or y != 0.0
-        or not z < 0.0
-        or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY
-    ):
-        raise ModelError(
-            f"gravity is {x:g} {y:g} {z:g} or disabled; floating needs it along -z, as in gravity='0 0 -9.81'"
-        )
+    gravity = read_gravity(model, required=True)
     root = _root(model, [one.body for one in hulls], body)
     data = mujoco.MjData(model)
     data.qpos[:] = _coordinates(model, qpos, root)
@@ -277,7 +270,7 @@ def build_vessel_from_hulls(
         qpos=data.qpos.copy(),
         root=root,
         water=sea,
-        gravity=-float(z),
+        gravity=gravity,
         mass=mass,
         inertia=inertia,
         root_from_vessel=centre,

@@ -13,7 +13,7 @@ from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.loads.added_mass import estimate_added_mass as added_mass_of
 from buoyancy_mj.loads.damping import Damping
-from buoyancy_mj.loads.drag import resolve_damping as damping_of
+from buoyancy_mj.loads.damping_arrays import resolve_damping as damping_of
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import RegularWave
 from buoyancy_mj.validation.case import Case, Row, amplitude, body, follow, numeric
