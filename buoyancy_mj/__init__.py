@@ -21,8 +21,8 @@ from buoyancy_mj.errors import SweepError as SweepError
 from buoyancy_mj.errors import WaterError as WaterError
 from buoyancy_mj.hulls.selection import Selection as Selection
 from buoyancy_mj.loads.coefficients import Coefficients as Coefficients
+from buoyancy_mj.loads.coefficients import add_coefficients as add_coefficients
 from buoyancy_mj.loads.coefficients import read_coefficients as read_coefficients
-from buoyancy_mj.loads.coefficients import state_coefficients as state_coefficients
 from buoyancy_mj.loads.damping import Damping as Damping
 from buoyancy_mj.loads.damping import Panels as Panels
 from buoyancy_mj.loads.damping import Silhouette as Silhouette

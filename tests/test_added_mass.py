@@ -423,7 +423,7 @@ def test_above_the_water_nothing_is_added():
         ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
         (
             {"boat": DIAGONAL},
-            "added mass is stated for body 'boat', which has no hull of its own; "
+            "added mass is given for body 'boat', which has no hull of its own; "
             "possible: arm, hull",
         ),
         (

@@ -13,8 +13,8 @@ from buoyancy_mj import (
     ModelError,
     SceneError,
     Simulation,
+    add_coefficients,
     read_coefficients,
-    state_coefficients,
 )
 from buoyancy_mj.loads.coefficients import DOFS
 from buoyancy_mj.scenes.scene import scene_from_table
@@ -71,17 +71,17 @@ def test_a_model_takes_them_where_it_states_none_itself(hemisphere):
         '<geom type="sphere" size="5" mass="261800" pos="0 0 1e-3"/></body>'
         "</worldbody></mujoco>"
     )
-    state_coefficients(spec, found)
+    add_coefficients(spec, found)
     buoyancy = Buoyancy(spec.compile())
     assert buoyancy.added_mass.matrices[0].reshape(6, 6) == pytest.approx(
         found["ball"].added_mass, rel=1e-12
     )
     assert "radiation" in buoyancy.causes
     own = spec.copy()
-    state_coefficients(own, {"ball": read_coefficients(hemisphere, 6.0)["ball"]})
+    add_coefficients(own, {"ball": read_coefficients(hemisphere, 6.0)["ball"]})
     assert len(own.numerics) == len(spec.numerics)
     with pytest.raises(ModelError, match="the model has no body 'ball2'; did you mean 'ball'"):
-        state_coefficients(spec, {"ball2": found["ball"]})
+        add_coefficients(spec, {"ball2": found["ball"]})
 
 
 def test_a_scene_names_a_dataset(hemisphere, tmp_path):

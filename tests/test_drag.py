@@ -4,7 +4,7 @@ import pytest
 
 from buoyancy_mj import Buoyancy, Damping, ModelError, Silhouette, Water
 from buoyancy_mj.hulls.geoms import find_hulls
-from buoyancy_mj.loads.drag import resolve_damping
+from buoyancy_mj.loads.damping_arrays import resolve_damping
 
 
 def damping(geom, drag=None, extra="", density=1000.0):
@@ -187,7 +187,7 @@ def test_what_is_stated_replaces_the_estimate_of_that_body():
         (
             "linear_damping:rov",
             "linear_damping:auv",
-            "linear damping is stated for body 'auv', which has no hull .*possible: rov",
+            "linear damping is given for body 'auv', which has no hull .*possible: rov",
         ),
     ],
 )

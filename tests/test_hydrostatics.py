@@ -438,8 +438,8 @@ def test_of_several_vehicles_one_is_named():
 @pytest.mark.parametrize(
     ("options", "arguments", "message"),
     [
-        ('gravity="0 0 0"', {}, "gravity is 0 0 0 or disabled; floating needs it along -z"),
-        ('gravity="1 0 -9"', {}, "gravity is 1 0 -9 or disabled"),
+        ('gravity="0 0 0"', {}, "gravity is 0 0 0; water needs it along -z"),
+        ('gravity="1 0 -9"', {}, "gravity is 1 0 -9; water needs it along -z"),
         (
             "",
             {"qpos": [0, 0, 0]},

@@ -38,8 +38,8 @@ from buoyancy_mj import (
     add_water,
     water_in,
 )
-from buoyancy_mj.engine import plugin
-from buoyancy_mj.engine.callbacks import PLUGIN
+from buoyancy_mj.engine import waters
+from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
 from buoyancy_mj.settings.settings import Settings
 
@@ -526,10 +526,10 @@ def test_records_of_freed_data_serve_again_and_those_in_use_stay():
 
 
 def test_waters_that_no_data_use_are_forgotten_in_the_end():
-    for i in range(plugin.KEPT + 10):
+    for i in range(waters.MOST_UNUSED + 10):
         with_water(Water(density=1.0 + i))
     gc.collect()
-    assert len(plugin._waters) <= plugin.KEPT + 3
+    assert len(waters._waters) <= waters.MOST_UNUSED + 3
 
 
 def test_threads_make_step_and_free_data_at_once():

@@ -2,9 +2,7 @@
 
 import contextlib
 import functools
-import math
 import threading
-import warnings
 from collections.abc import Iterator, Sequence
 from typing import Unpack
 
@@ -13,21 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine import callbacks, passes
+from buoyancy_mj.engine.checks import check_actuation, check_sleep, check_waves
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.load_model import build_load_model
-from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError
+from buoyancy_mj.errors import EngineError
 from buoyancy_mj.hulls.geoms import find_hulls
-from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.kernels.passes import Record
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
-from buoyancy_mj.loads.drag import resolve_damping
+from buoyancy_mj.loads.damping_arrays import resolve_damping
 from buoyancy_mj.loads.loads import Loads, Portion
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.settings import Options, Settings, settings_with
+from buoyancy_mj.settings.settings import Options, Settings, combine_settings
 from buoyancy_mj.submersion.hull_set import HullSet
 
 
@@ -65,13 +63,13 @@ class Buoyancy(ReadOnly):
     ) -> None:
         self.model = model
         """The model."""
-        self.settings = settings_with(water, options)
+        self.settings = combine_settings(water, options)
         """All options."""
         self.water = self.settings.water
         """The sea."""
-        callbacks.refuse_actuation(model)
-        _refuse_sleep(model)
-        _ = self.gravity
+        check_actuation(model)
+        check_sleep(model)
+        read_gravity(model)
         self.hulls = find_hulls(model, self.settings.selection, bodies)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
@@ -83,7 +81,7 @@ class Buoyancy(ReadOnly):
             fills=[hull.fill for hull in self.hulls],
         )
         self.packed = self.settings.method.pack(hulls, self.water)
-        _doubt(model, self.water, self.hulls)
+        check_waves(model, self.water, self.hulls)
         self.added_mass = resolve_added_mass(
             model, self.hulls, self.water.density, self.settings.added_mass
         )
@@ -119,7 +117,7 @@ class Buoyancy(ReadOnly):
         Another model than the own one is left alone, and so are all while the water is `installed`.
         A second call in the same pass replaces the first.
         """
-        if model._address == self.model._address and not callbacks.is_lent(self):
+        if model._address == self.model._address and not callbacks.is_installed(self):
             self.act(data)
 
     @contextlib.contextmanager
@@ -143,7 +141,7 @@ class Buoyancy(ReadOnly):
             ModelError: actuation has been disabled.
             EngineError: `native` or `copies` is asked for and cannot be; the message says why.
         """
-        with callbacks.lend(self, native, copies=copies):
+        with callbacks.install(self, native, copies=copies):
             yield self
 
     def act(self, data: mujoco.MjData) -> None:
@@ -252,43 +250,4 @@ class Buoyancy(ReadOnly):
         Raises:
             ModelError: it is not along -z.
         """
-        x, y, z = self.model.opt.gravity
-        if self.model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
-            return 0.0
-        if x != 0.0 or y != 0.0 or z > 0.0:
-            raise ModelError(
-                f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: set <option gravity='0 0 -9.81'/>"
-            )
-        return -float(z)
-
-
-def _doubt(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
-    """Tell of waves that break, and refuse water in which what floats would be aground."""
-    for warning in water.warnings:
-        warnings.warn(f"the water has {warning}", BuoyancyWarning, stacklevel=3)
-    shallowest = float(np.min(water.rows[:, 5], initial=np.inf))
-    for body in {hull.body for hull in hulls}:
-        root = int(model.body_rootid[body])
-        if math.isinf(shallowest) or model.body_dofnum[root] != 6:
-            continue
-        together = [hull for hull in hulls if model.body_rootid[hull.body] == root]
-        # what it must displace, over no more than half the area of its hulls: Cauchy
-        volume = min(
-            float(model.body_subtreemass[root]) / water.density,
-            sum(hull.displaced_volume for hull in together),
-        )
-        least = volume / (0.5 * sum(hull.mesh.area for hull in together))
-        if least > shallowest:
-            raise ModelError(
-                f"the waves run in water {shallowest:g} m deep, and body '{body_name(model, body)}' has a draft of at least "
-                f"{least:.3g} m in any attitude; make the waves' depth greater"
-            )
-
-
-def _refuse_sleep(model: mujoco.MjModel) -> None:
-    """Refuse bodies that would stay where they are while the water moves."""
-    if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP:
-        raise ModelError(
-            "this model lets bodies at rest sleep, and MuJoCo does not wake them for water that moves: "
-            "remove <flag sleep='enable'/>"
-        )
+        return read_gravity(self.model)

@@ -7,20 +7,19 @@ from typing import Any, Protocol
 
 import mujoco
 
-from buoyancy_mj.engine import layout
 from buoyancy_mj.engine.c_functions import address_of
+from buoyancy_mj.engine.checks import check_actuation, skips_passive
 from buoyancy_mj.engine.compiled import CompiledWater
+from buoyancy_mj.engine.instances import PLUGIN, plugin_instances
 from buoyancy_mj.errors import EngineError, ModelError
 from buoyancy_mj.kernels.entries.closures import Closure
 
-PLUGIN = "buoyancy_mj.water"
-"""Name of the engine plugin by which a model brings its own water, see `plugin`."""
 _ENGINE_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
-_lent: dict[int, tuple["Lendable", ...]] = {}
+_installed: dict[int, tuple["Installable", ...]] = {}
 """What acts in a callback, by the identity of the callback, while it is lent."""
 
 
-class Lendable(Protocol):
+class Installable(Protocol):
     """Water that can act as a callback."""
 
     model: mujoco.MjModel
@@ -36,67 +35,39 @@ class Lendable(Protocol):
 
 
 @contextlib.contextmanager
-def lend(water: Lendable, native: bool | None, *, copies: bool) -> Iterator[None]:
+def install(water: Installable, native: bool | None, *, copies: bool) -> Iterator[None]:
     """Lend `water` to MuJoCo, see `Buoyancy.installed`."""
-    refuse_actuation(water.model)
+    check_actuation(water.model)
     if plugin_instances(water.model):
         raise ModelError(
             f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would double it: "
             "leave out the one or the other"
         )
-    if is_lent(water):
+    if is_installed(water):
         yield
         return
     slot = "control" if skips_passive(water.model.opt.disableflags) else "passive"
     previous = getattr(mujoco, f"get_mjcb_{slot}")()
-    lend = getattr(mujoco, f"set_mjcb_{slot}")
+    set_callback = getattr(mujoco, f"set_mjcb_{slot}")
     closure = _compiled(water, slot, previous, native, copies=copies)
     callback = _in_python(water, previous) if closure is None else _ENGINE_FUNCTION(closure.address)
-    _lent[id(callback)] = (*_lent.get(id(previous), ()), water)
-    lend(callback)
+    _installed[id(callback)] = (*_installed.get(id(previous), ()), water)
+    set_callback(callback)
     try:
         yield
     finally:
-        lend(previous)
-        del _lent[id(callback)]
+        set_callback(previous)
+        del _installed[id(callback)]
 
 
-def is_lent(water: Lendable) -> bool:
+def is_installed(water: Installable) -> bool:
     """Whether it is lent, and MuJoCo would call it now."""
     now = mujoco.get_mjcb_passive(), mujoco.get_mjcb_control()
-    return any(water is other for callback in now for other in _lent.get(id(callback), ()))
-
-
-def plugin_instances(model: mujoco.MjModel) -> list[int]:
-    """Indices of the plugin instances by which a model brings its own water."""
-    at = ctypes.c_int(-1)
-    find = layout.function("mjp_getPlugin", ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)
-    find(PLUGIN.encode(), ctypes.addressof(at))
-    return [] if at.value < 0 else [i for i in range(model.nplugin) if model.plugin[i] == at.value]
-
-
-def skips_passive(disableflags: int) -> bool:
-    """Whether MuJoCo skips the passive forces of a model with these flags, ours among them."""
-    both = int(mujoco.mjtDisableBit.mjDSBL_SPRING) | int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
-    return disableflags & both == both
-
-
-def refuse_actuation(model: mujoco.MjModel) -> None:
-    """Refuse a model for which MuJoCo would skip a control callback, without a word.
-
-    Raises:
-        ModelError: it disables actuation.
-    """
-    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
-        raise ModelError(
-            "this model disables actuation, and MuJoCo then skips the control callback through which water acts: "
-            "remove <flag actuation='disable'/>, and disable single actuators by <option actuatorgroupdisable> instead, "
-            "or put the water into the model (add_water)"
-        )
+    return any(water is other for callback in now for other in _installed.get(id(callback), ()))
 
 
 def _compiled(
-    water: Lendable, slot: str, previous: Any, native: bool | None, *, copies: bool
+    water: Installable, slot: str, previous: Any, native: bool | None, *, copies: bool
 ) -> Closure | None:
     """The callback as a C function; None where it is not wanted, or cannot be and need not."""
     try:
@@ -121,7 +92,9 @@ def _compiled(
         return None
 
 
-def _in_python(water: Lendable, previous: Any) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
+def _in_python(
+    water: Installable, previous: Any
+) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
     """The callback in Python: first the one that was there before, then the water on its own model."""
 
     def callback(model: mujoco.MjModel, data: mujoco.MjData) -> None:

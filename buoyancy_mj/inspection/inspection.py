@@ -11,17 +11,12 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, MeshError
 from buoyancy_mj.hulls.geoms import build_hulls, diagnose_geom, read_geom_mesh
-from buoyancy_mj.hulls.hull import OVERLAP, Hull, find_close_pairs
-from buoyancy_mj.hulls.selection import (
-    Selection,
-    Verdict,
-    body_name,
-    geom_kind,
-    geom_name,
-    judge_geoms,
-    parse_fills,
-    parse_shapes,
-)
+from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
+from buoyancy_mj.hulls.overlaps import OVERLAP, find_close_pairs
+from buoyancy_mj.hulls.patterns import parse_fills, parse_shapes
+from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.hulls.verdicts import Verdict, judge_geoms
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.shapes import convex_hull
@@ -176,8 +171,8 @@ def inspect_model(
     sea = water or Water()
     verdicts = judge_geoms(model, selection)
     chosen = [verdict.geom for verdict in verdicts if verdict.displaces]
-    forms = parse_shapes(model, chosen, selection.hull)
-    fills = parse_fills(model, chosen, selection.fill)
+    forms = parse_shapes(model, chosen, selection)
+    fills = parse_fills(model, chosen, selection)
     problems: list[str] = []
     parts = [
         _part(model, verdict, forms.get(verdict.geom) == "convex", fills, problems)

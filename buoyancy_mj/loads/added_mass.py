@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.special import elliprd
 
 from buoyancy_mj.errors import ModelError, choices
-from buoyancy_mj.hulls.custom import find_body, read_custom
+from buoyancy_mj.hulls.custom import find_body, read_numerics
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.meshes.mesh import TriMesh
 
@@ -51,7 +51,7 @@ def resolve_added_mass(
             f"added mass is '{source}'; {choices(source, SOURCES)}, or matrices by body"
         )
     elif source in ("model", "estimate"):
-        numbers = read_custom(model, QUANTITY, bodies)
+        numbers = read_numerics(model, QUANTITY, bodies)
         given = {body: _matrix(body_name(model, body), value) for body, value in numbers.items()}
     if source == "estimate":
         estimates = {

@@ -29,7 +29,7 @@ class Coefficients:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class Dataset:
+class CoefficientsFile:
     """A dataset as a scene names it, see `read_coefficients`."""
 
     file: str
@@ -137,7 +137,7 @@ def read_coefficients(
     return found
 
 
-def state_coefficients(spec: mujoco.MjSpec, coefficients: Mapping[str, Coefficients]) -> None:
+def add_coefficients(spec: mujoco.MjSpec, coefficients: Mapping[str, Coefficients]) -> None:
     """Write coefficients into a model by the names of its bodies, where it states none itself: see `Buoyancy`.
 
     Raises:

@@ -6,10 +6,10 @@ from typing import NamedTuple
 import mujoco
 
 from buoyancy_mj.engine.c_functions import pop_error
-from buoyancy_mj.engine.callbacks import skips_passive
+from buoyancy_mj.engine.checks import skips_passive
 from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import EngineError
-from buoyancy_mj.loads.coefficients import state_coefficients
+from buoyancy_mj.loads.coefficients import add_coefficients
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import EQUILIBRIUM, INTEGRATORS, Scene
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec
@@ -79,7 +79,7 @@ def _join_files(scene: Scene) -> tuple[mujoco.MjSpec, int]:
     spec = read_vehicle(path)
     remove_dry_land(spec, path, scene.water.level)
     if scene.coefficients is not None:
-        state_coefficients(spec, scene.coefficients.read(scene.folder))
+        add_coefficients(spec, scene.coefficients.read(scene.folder))
     bodies = len(spec.bodies)
     if scene.environment is not None:
         environment = catalog.environment_path(scene.environment, scene.folder)

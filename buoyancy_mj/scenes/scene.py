@@ -10,8 +10,8 @@ from typing import Any
 import mujoco
 
 from buoyancy_mj.errors import SceneError, choices
-from buoyancy_mj.loads.coefficients import Dataset
-from buoyancy_mj.settings.config import SELECTION, plain_value
+from buoyancy_mj.loads.coefficients import CoefficientsFile
+from buoyancy_mj.settings.config import SELECTION, parse_value
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.tables import build
 from buoyancy_mj.settings.toml import (
@@ -105,7 +105,7 @@ class Scene(Settings):
     """Frames recorded per simulated second [Hz]."""
     start: Start = Start()
     """Pose and velocity at time 0."""
-    coefficients: Dataset | None = None
+    coefficients: CoefficientsFile | None = None
     """A potential-flow code's dataset of added mass and radiation damping, for bodies that state none themselves."""
     mass: float | None = None
     """Mass of the whole vehicle [kg], the masses and inertias of its bodies scaled alike; None for its own."""
@@ -178,7 +178,9 @@ def scene_from_table(
     given["damping"] = damping_from_table(plain.pop("damping", True), f"{where}: damping")
     if "coefficients" in plain:
         place = f"{where}: coefficients"
-        given["coefficients"] = build(Dataset, table_of(plain.pop("coefficients"), place), place)
+        given["coefficients"] = build(
+            CoefficientsFile, table_of(plain.pop("coefficients"), place), place
+        )
     given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
     patterns = {key: plain.pop(key) for key in SELECTION if key in plain}
     given["selection"] = selection_from_table(patterns, where)
@@ -196,7 +198,7 @@ def _set(table: dict[str, Any], setting: str) -> None:
         raise SceneError(
             f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2"
         )
-    value = plain_value(text)
+    value = parse_value(text)
     place: Any = table
     *path, last = key.strip().split(".")
     if ".".join(path) in _VECTORS:

@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
-from buoyancy_mj.engine.callbacks import plugin_instances
+from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, DivergenceError, ModelError
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.frames import LAST, Energy, Frame, Summary

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BuoyancyWarning, SceneError, choices
 from buoyancy_mj.hulls.geoms import find_hulls
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.scenes.scene import Scene, Start
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.equilibrium import find_equilibrium

@@ -15,7 +15,7 @@ import numpy as np
 from mujoco import batch
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine.callbacks import plugin_instances
+from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.errors import BuoyancyError, DivergenceError, SweepError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Summary

@@ -6,7 +6,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 
-from buoyancy_mj.engine.callbacks import PLUGIN
+from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
 from buoyancy_mj.scenes.specs import compile_spec, read_spec
 

@@ -44,11 +44,11 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
     """
     given = {key: text.strip() for key, text in texts.items() if text.strip()}
     sea: dict[str, Any] = {
-        key: plain_value(given[key]) for key in ("density", "level") if key in given
+        key: parse_value(given[key]) for key in ("density", "level") if key in given
     }
     if "current" in given:
         text = given["current"]
-        speeds = [plain_value(word) for word in text.replace(",", " ").split()]
+        speeds = [parse_value(word) for word in text.replace(",", " ").split()]
         sea["current"] = _words(text, f"{where}: current") if "=" in text else speeds
     if "waves" in given:
         sea["waves"] = [
@@ -64,7 +64,7 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
         pressure=given.get("pressure", "archimedes"),
         added_mass=given.get("added_mass", "model"),
         damping=damping_from_table(
-            _words(damping, f"{where}: damping") if "=" in damping else plain_value(damping),
+            _words(damping, f"{where}: damping") if "=" in damping else parse_value(damping),
             f"{where}: damping",
         ),
         selection=selection_from_table(words, where),
@@ -99,7 +99,7 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
     return {key: text for key, text in texts.items() if text}
 
 
-def plain_value(text: str) -> Any:
+def parse_value(text: str) -> Any:
     """A value of TOML, or a bare word."""
     try:
         return tomllib.loads(f"value = {text}")["value"]
@@ -116,7 +116,7 @@ def _words(text: str, where: str) -> dict[str, Any]:
                 f"{where} is '{text.strip()}'; after the kind it must be key=value pairs between blanks, not '{word}'"
             )
     pairs = (word.split("=", 1) for word in words)
-    return ({"kind": kind} if kind else {}) | {key: plain_value(value) for key, value in pairs}
+    return ({"kind": kind} if kind else {}) | {key: parse_value(value) for key, value in pairs}
 
 
 def _damping_text(damping: Damping | None) -> str:
@@ -175,7 +175,7 @@ def _fields(value: Any, leave: Sequence[str] = (), *, all_of_them: bool = False)
 
 
 def _toml(value: Any) -> str:
-    """A value without blanks, as `plain_value` reads it."""
+    """A value without blanks, as `parse_value` reads it."""
     if isinstance(value, bool | str):
         return str(value).lower() if isinstance(value, bool) else value
     if isinstance(value, tuple):

@@ -75,7 +75,7 @@ class Options(TypedDict, total=False):
     selection: Selection
 
 
-def settings_with(water: Water | Settings | None, options: Options) -> Settings:
+def combine_settings(water: Water | Settings | None, options: Options) -> Settings:
     """The settings of a water, fresh and still if None, or other settings, with options over them."""
     if "method" in options:
         options["method"] = parse_method(options["method"])

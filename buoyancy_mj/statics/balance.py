@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.vessel import Vessel
 

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
-from buoyancy_mj.hulls.hull import find_close_pairs
-from buoyancy_mj.hulls.selection import GEOMS, Selection, body_name
+from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.overlaps import find_close_pairs
+from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, Selection
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.sea.water import Water
@@ -110,7 +111,7 @@ class Ballast:
                     mass=0.0,
                 )
                 for text in spec.texts:
-                    if text.name.rsplit("/", 1)[-1] == GEOMS:
+                    if text.name.rsplit("/", 1)[-1] == CUSTOM_TEXTS["geoms"]:
                         text.data = f"{text.data} {name}"
 
 

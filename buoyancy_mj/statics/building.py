@@ -9,8 +9,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.geoms import find_hulls
+from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import Selection, body_name
+from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.vessel import Vessel, VesselHull, has_free_joint
 
@@ -50,7 +52,7 @@ def build_vessel_from_hulls(
     body: str | None = None,
 ) -> Vessel:
     """Build a vessel of a model with hulls at hand; see `build_vessel`."""
-    gravity = _read_gravity(model)
+    gravity = read_gravity(model, required=True)
     root = _find_root(model, [hull.body for hull in hulls], body)
 
     # the model in the pose of its coordinates
@@ -101,18 +103,6 @@ class _Frame(NamedTuple):
     def express(self, point: NDArray[np.float64]) -> NDArray[np.float64]:
         """A point (3,) [m] of the world in this frame."""
         return np.asarray(self.root_from_world @ (point - self.origin), float)
-
-
-def _read_gravity(model: mujoco.MjModel) -> float:
-    """Downward acceleration [m/s^2] of a model whose gravity points along -z."""
-    x, y, z = model.opt.gravity
-    disabled = bool(model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY)
-    if disabled or x != 0.0 or y != 0.0 or not z < 0.0:
-        raise ModelError(
-            f"gravity is {x:g} {y:g} {z:g} or disabled; "
-            "floating needs it along -z, as in gravity='0 0 -9.81'"
-        )
-    return -float(z)
 
 
 def _find_root(model: mujoco.MjModel, bodies: Sequence[int], name: str | None) -> int:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.loads.added_mass import estimate_added_mass
 from buoyancy_mj.loads.damping import Damping
-from buoyancy_mj.loads.drag import resolve_damping
+from buoyancy_mj.loads.damping_arrays import resolve_damping
 from buoyancy_mj.validation.case import Case, Row
 from buoyancy_mj.validation.runs import build_body
 

@@ -13,7 +13,7 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning, RecordingError
-from buoyancy_mj.hulls.selection import body_name, geom_name
+from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ModelError
-from buoyancy_mj.hulls.custom import read_custom
+from buoyancy_mj.hulls.custom import read_numerics
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.selection import body_name
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.rays import silhouette
 from buoyancy_mj.loads.damping import Damping, Panels
@@ -31,9 +31,9 @@ def resolve_damping(
     coupled, matrices = np.zeros(len(bodies), np.int64), np.zeros((len(bodies), 72))
     radiation, panels = np.zeros((len(bodies), 4)), np.zeros((len(bodies), 5))
     own_linear, own_quadratic = (
-        read_custom(model, f"{kind}_damping", bodies) for kind in ("linear", "quadratic")
+        read_numerics(model, f"{kind}_damping", bodies) for kind in ("linear", "quadratic")
     )
-    made = read_custom(model, "radiation_damping", bodies) if damping.radiation else {}
+    made = read_numerics(model, "radiation_damping", bodies) if damping.radiation else {}
     members = [np.flatnonzero(model.body_weldid == body) for body in bodies]
     for row, body in enumerate(bodies):
         mass = float(model.body_mass[members[row]].sum())

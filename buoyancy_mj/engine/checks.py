@@ -1,0 +1,81 @@
+"""What water asks of a model before it acts: flags of MuJoCo, and enough depth under the waves."""
+
+import math
+import warnings
+from collections.abc import Sequence
+
+import mujoco
+import numpy as np
+
+from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.sea.water import Water
+
+_DEPTH = 5
+"""Column of `Water.rows` that holds the depth [m] in which a wave runs."""
+
+
+def skips_passive(disableflags: int) -> bool:
+    """Whether MuJoCo skips the passive forces, and the water with them, under these flags."""
+    both = int(mujoco.mjtDisableBit.mjDSBL_SPRING) | int(mujoco.mjtDisableBit.mjDSBL_DAMPER)
+    return disableflags & both == both
+
+
+def check_actuation(model: mujoco.MjModel) -> None:
+    """Refuse a model for which MuJoCo would skip a control callback without a word.
+
+    Raises:
+        ModelError: it disables actuation.
+    """
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
+        raise ModelError(
+            "this model disables actuation, and MuJoCo then skips the control callback through which "
+            "water acts: remove <flag actuation='disable'/>, and disable single actuators by "
+            "<option actuatorgroupdisable> instead, or put the water into the model (add_water)"
+        )
+
+
+def check_sleep(model: mujoco.MjModel) -> None:
+    """Refuse a model whose bodies would stay at rest while the water moves.
+
+    Raises:
+        ModelError: it enables sleep.
+    """
+    if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP:
+        raise ModelError(
+            "this model lets bodies at rest sleep, and MuJoCo does not wake them for water that moves: "
+            "remove <flag sleep='enable'/>"
+        )
+
+
+def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
+    """Warn of waves that break, and refuse waves in water in which a floating body is aground.
+
+    From any side, hulls show no more than half their area (Cauchy's projection formula). The volume
+    that a body displaces, over that, is its least draft in any attitude.
+
+    Raises:
+        ModelError: a floating body has more draft than the water is deep.
+    """
+    for warning in water.warnings:
+        warnings.warn(f"the water has {warning}", BuoyancyWarning, stacklevel=3)
+    shallowest = float(np.min(water.rows[:, _DEPTH], initial=np.inf))
+    if math.isinf(shallowest):
+        return
+    for body in {hull.body for hull in hulls}:
+        root = int(model.body_rootid[body])
+        if model.body_dofnum[root] != 6:
+            continue
+        of_vehicle = [hull for hull in hulls if model.body_rootid[hull.body] == root]
+        volume = min(
+            float(model.body_subtreemass[root]) / water.density,
+            sum(hull.displaced_volume for hull in of_vehicle),
+        )
+        least_draft = volume / (0.5 * sum(hull.mesh.area for hull in of_vehicle))
+        if least_draft > shallowest:
+            raise ModelError(
+                f"the waves run in water {shallowest:g} m deep, and body '{body_name(model, body)}' "
+                f"has a draft of at least {least_draft:.3g} m in any attitude; "
+                "make the waves' depth greater"
+            )

@@ -1,0 +1,76 @@
+"""Models read at their addresses in the engine's memory: a copy, a fingerprint, a plugin's texts."""
+
+import ctypes
+import hashlib
+
+import mujoco
+
+from buoyancy_mj.engine import layout
+from buoyancy_mj.errors import ModelError
+from buoyancy_mj.settings.config import KEYS
+
+MODEL_ARRAYS = (
+    *("geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group"),
+    *("geom_size", "geom_pos", "geom_quat", "mesh_vertadr", "mesh_vertnum", "mesh_vert"),
+    *("mesh_faceadr", "mesh_facenum", "mesh_face", "body_parentid", "body_weldid", "body_pos"),
+    *("body_quat", "body_plugin", "text_adr", "text_size", "text_data", "numeric_adr"),
+    *("numeric_size", "numeric_data", "names", "plugin"),
+)
+"""Arrays of mjModel from which the hulls and their drag are made: models that agree in them share a water.
+
+What else matters, such as masses and the timestep, is read anew in each pass."""
+
+_DISABLE = mujoco.mjtDisableBit
+_FLAGS = {
+    "mjModel.opt.disableflags": int(_DISABLE.mjDSBL_SPRING)
+    | int(_DISABLE.mjDSBL_DAMPER)
+    | int(_DISABLE.mjDSBL_GRAVITY),
+    "mjModel.opt.enableflags": int(mujoco.mjtEnableBit.mjENBL_SLEEP),
+}
+"""Flags in which such models agree too."""
+_INT = ctypes.c_int
+_WORD = ctypes.c_int64
+
+
+def read_config(model: int, instance: int) -> dict[str, str]:
+    """The texts of the configuration of a plugin instance of the model at an address, by key."""
+    read = layout.function("mj_getPluginConfig", ctypes.c_char_p, _WORD, _INT, ctypes.c_char_p)
+    return {key: (read(model, instance, key.encode()) or b"").decode() for key in KEYS}
+
+
+def fingerprint_model(model: int, instance: int) -> bytes:
+    """A hash (16 bytes) of all from which the water of an instance of the model at an address is made."""
+    texts = read_config(model, instance)
+    digest = hashlib.blake2b(f"{instance} {texts}".encode(), digest_size=16)
+    for name in MODEL_ARRAYS:
+        values = layout.content(f"mjModel.{name}", model)
+        digest.update(len(values).to_bytes(8))
+        digest.update(values)
+
+    # the compiler disables other flags for a while
+    for path, mask in _FLAGS.items():
+        flags = ctypes.c_int.from_address(model + layout.offset(path)).value & mask
+        digest.update(str(flags).encode())
+    digest.update(ctypes.string_at(model + layout.offset("mjModel.opt.gravity"), 3 * 8))
+    return digest.digest()
+
+
+def copy_model(model: int) -> mujoco.MjModel:
+    """A copy of the model at an address, as a Python object.
+
+    Raises:
+        ModelError: MuJoCo cannot copy it.
+    """
+    # a batch's models refer to the meshes of another
+    error = ctypes.create_string_buffer(1000)
+    embed = layout.function("mj_embedAssets", _WORD, _WORD, _WORD, _INT)
+    whole = embed(model, ctypes.addressof(error), len(error))
+    if not whole:
+        raise ModelError(f"MuJoCo cannot copy the model to find its water: {error.value.decode()}")
+
+    # into a buffer as a binary file, and back
+    buffer = ctypes.create_string_buffer(layout.function("mj_sizeModel", _WORD, _WORD)(whole))
+    save = layout.function("mj_saveModel", None, *[_WORD] * 4)
+    save(whole, 0, ctypes.addressof(buffer), len(buffer))
+    layout.function("mj_deleteModel", None, _WORD)(whole)
+    return mujoco.MjModel.from_binary_path("model.mjb", {"model.mjb": buffer.raw})

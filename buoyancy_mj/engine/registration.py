@@ -1,0 +1,99 @@
+"""The registration of the plugin with MuJoCo: its struct, its compiled functions, and their question."""
+
+import ctypes
+import functools
+
+import mujoco
+
+from buoyancy_mj.engine import compiled, layout
+from buoyancy_mj.engine.c_functions import address_of, wrap_python
+from buoyancy_mj.engine.instances import PLUGIN
+from buoyancy_mj.engine.model_memory import MODEL_ARRAYS
+from buoyancy_mj.engine.waters import LOCK, find_water, is_making_water
+from buoyancy_mj.kernels.entries import plugin_hooks
+from buoyancy_mj.kernels.entries.closures import Closure
+from buoyancy_mj.kernels.entries.views import Table
+from buoyancy_mj.kernels.passes import ALIVE, MODEL, WATER
+from buoyancy_mj.settings.config import KEYS
+
+_HOOKS = (
+    *("nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance"),
+    *("visualize", "actuator_act_dot", "sdf_distance", "sdf_gradient", "sdf_staticdistance"),
+    *("sdf_attribute", "sdf_aabb"),
+)
+"""Functions of MuJoCo's mjpPlugin, in their order."""
+_INT = ctypes.c_int
+_WORD = ctypes.c_int64
+
+
+@functools.cache
+def register() -> None:
+    """Register the plugin with MuJoCo, once.
+
+    Raises:
+        EngineError: this MuJoCo is not as expected inside.
+    """
+    _Engine()
+
+
+def _resolve(model: int, data: int, instance: int) -> None:
+    """Put the address of a record for a model into the engine's data."""
+    if is_making_water():
+        return
+    with LOCK:
+        water = find_water(model, instance).compiled
+        slot = layout.word(data + layout.offset("mjData.plugin_data")) + 8 * instance
+        record = layout.word(slot)
+        if record and compiled.read_ids(record)[WATER] == water.address:
+            compiled.read_ids(record)[MODEL] = model
+            return
+        if record:
+            compiled.read_ids(record)[ALIVE] = 0
+        _WORD.from_address(slot).value = water.record(model).address
+
+
+class _Plugin(ctypes.Structure):
+    """MuJoCo's mjpPlugin, of mjplugin.h."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("nattribute", _INT),
+        ("attributes", ctypes.POINTER(ctypes.c_char_p)),
+        ("capabilityflags", _INT),
+        ("needstage", _INT),
+        *((name, ctypes.c_void_p) for name in _HOOKS),
+    )
+
+
+class _Engine:
+    """The plugin as the engine knows it, never freed: data may be deleted after the interpreter has gone."""
+
+    def __init__(self) -> None:
+        compiled.require_known_layout()
+        layout.verify(["mjData.plugin_data", *(f"mjModel.{name}" for name in MODEL_ARRAYS)])
+        self._resolve = wrap_python(_resolve)
+        self._context = Table(
+            plugin_hooks.Context(
+                layout.offset("mjData.plugin_data"),
+                address_of(self._resolve),
+                layout.symbol("mju_error"),
+            )
+        )
+        bound = {"init", "destroy", "copy", "compute"}
+        self._functions = {
+            hook.__name__: Closure(
+                hook, *([self._context.address] if hook.__name__ in bound else [])
+            )
+            for hook in plugin_hooks.HOOKS
+        }
+        self._attributes = (ctypes.c_char_p * len(KEYS))(*(key.encode() for key in KEYS))
+        self._plugin = _Plugin(
+            name=PLUGIN.encode(),
+            nattribute=len(KEYS),
+            attributes=self._attributes,
+            capabilityflags=int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
+            needstage=int(mujoco.mjtStage.mjSTAGE_VEL),
+            **{name: closure.address for name, closure in self._functions.items()},
+        )
+        layout.function("mjp_registerPlugin", _INT, ctypes.c_void_p)(ctypes.addressof(self._plugin))
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))

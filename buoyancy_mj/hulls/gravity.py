@@ -1,0 +1,30 @@
+"""The gravity of a model, which water needs along -z."""
+
+import mujoco
+
+from buoyancy_mj.errors import ModelError
+
+
+def read_gravity(model: mujoco.MjModel, *, required: bool = False) -> float:
+    """The downward acceleration of a model [m/s^2]; 0 where its flags disable gravity.
+
+    Args:
+        model: any model.
+        required: whether a model without gravity is refused.
+
+    Raises:
+        ModelError: gravity is not along -z; or it is zero or disabled, and required.
+    """
+    if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
+        if required:
+            raise ModelError(
+                "gravity is disabled, and nothing floats without it: remove <flag gravity='disable'/>"
+            )
+        return 0.0
+    x, y, z = model.opt.gravity
+    if x != 0.0 or y != 0.0 or z > 0.0 or (required and z == 0.0):
+        raise ModelError(
+            f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: "
+            "set <option gravity='0 0 -9.81'/>"
+        )
+    return -float(z)
