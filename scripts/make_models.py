@@ -15,15 +15,30 @@ from buoyancy_mj.paper import solids
 MODELS = Path(__file__).resolve().parent.parent / "models"
 UPRIGHT_TO_X = trimesh.transformations.rotation_matrix(np.pi / 2.0, [0.0, 1.0, 0.0])
 
-# AUV, every part about its own middle, see models/sauvc_auv/README.md
-HULL_RADIUS, HULL_CYLINDER, HULL_DOME = 0.090, 0.450, 0.075
-POD_RADIUS, POD_CYLINDER, POD_DOME = 0.057, 0.300, 0.030
-PLATE_LENGTH, PLATE_HEIGHT, PLATE_THICKNESS, PLATE_SPACING = 0.600, 0.352, 0.012, 0.470
-WINDOW_LENGTH, WINDOW_HEIGHT, WINDOW_AT = 0.230, 0.230, 0.135
-BAR_WIDTH, BAR_THICKNESS, BAR_AT = 0.030, 0.012, 0.100
-FOAM = 0.340, 0.090, 0.035
-DUCT_OUTER, DUCT_INNER, DUCT_LENGTH = 0.0485, 0.0380, 0.045
-MOTOR_RADIUS, MOTOR_LENGTH, STRUT = 0.020, 0.080, 0.006
+# the AUV's parts, each about its own middle, see models/sauvc_auv/README.md [m]
+HULL_RADIUS = 0.090
+HULL_CYLINDER = 0.450
+HULL_DOME = 0.075
+POD_RADIUS = 0.057
+POD_CYLINDER = 0.300
+POD_DOME = 0.030
+PLATE_LENGTH = 0.600
+PLATE_HEIGHT = 0.352
+PLATE_THICKNESS = 0.012
+PLATE_SPACING = 0.470
+WINDOW_LENGTH = 0.230
+WINDOW_HEIGHT = 0.230
+WINDOW_OFFSET = 0.135
+BAR_WIDTH = 0.030
+BAR_THICKNESS = 0.012
+BAR_OFFSET = 0.100
+FOAM_SIZE = (0.340, 0.090, 0.035)
+DUCT_OUTER_RADIUS = 0.0485
+DUCT_INNER_RADIUS = 0.0380
+DUCT_LENGTH = 0.045
+MOTOR_RADIUS = 0.020
+MOTOR_LENGTH = 0.080
+STRUT_WIDTH = 0.006
 
 
 def hourglass() -> Trimesh:
@@ -35,23 +50,27 @@ def hourglass() -> Trimesh:
 def capped_tube(radius: float, length: float, dome: float) -> Trimesh:
     """A cylinder along x with half an ellipsoid of revolution at each end."""
     angle = np.linspace(0.0, np.pi / 2.0, 13)
-    end = np.column_stack([radius * np.cos(angle), 0.5 * length + dome * np.sin(angle)])
-    end[-1, 0] = 0.0
-    profile = np.vstack([end[::-1] * [1.0, -1.0], end])
+    dome_profile = np.column_stack([radius * np.cos(angle), 0.5 * length + dome * np.sin(angle)])
+    dome_profile[-1, 0] = 0.0  # on the axis
+    profile = np.vstack([dome_profile[::-1] * [1.0, -1.0], dome_profile])
     return revolve(profile, sections=64).apply_transform(UPRIGHT_TO_X)
 
 
 def frame() -> Trimesh:
     """Two upright plates with two windows each, joined by four bars across."""
     parts = []
+
+    # the plates
     for side in (-0.5, 0.5):
         plate = box([PLATE_LENGTH, PLATE_THICKNESS, PLATE_HEIGHT])
         windows = [
             box([WINDOW_LENGTH, 1.0, WINDOW_HEIGHT]).apply_translation([x, 0.0, 0.0])
-            for x in (-WINDOW_AT, WINDOW_AT)
+            for x in (-WINDOW_OFFSET, WINDOW_OFFSET)
         ]
         parts.append(plate.difference(windows).apply_translation([0.0, side * PLATE_SPACING, 0.0]))
-    for x in (-BAR_AT, BAR_AT):
+
+    # the bars
+    for x in (-BAR_OFFSET, BAR_OFFSET):
         for z in (-0.5, 0.5):
             bar = box([BAR_WIDTH, PLATE_SPACING, BAR_THICKNESS])
             parts.append(bar.apply_translation([x, 0.0, z * (PLATE_HEIGHT - BAR_THICKNESS)]))
@@ -60,26 +79,27 @@ def frame() -> Trimesh:
 
 def thruster() -> Trimesh:
     """A duct along z with a motor in it, on three struts."""
-    duct = trimesh.creation.annulus(DUCT_INNER, DUCT_OUTER, DUCT_LENGTH, sections=48)
+    duct = trimesh.creation.annulus(DUCT_INNER_RADIUS, DUCT_OUTER_RADIUS, DUCT_LENGTH, sections=48)
     motor = cylinder(MOTOR_RADIUS, MOTOR_LENGTH, sections=32)
+
+    # from the axis into the duct's wall
     struts = []
-    reach = 0.5 * (DUCT_INNER + DUCT_OUTER)
+    reach = 0.5 * (DUCT_INNER_RADIUS + DUCT_OUTER_RADIUS)
     for turn in np.arange(3) * 2.0 * np.pi / 3.0:
-        strut = box([reach, STRUT, STRUT]).apply_translation([0.5 * reach, 0.0, 0.0])
-        struts.append(
-            strut.apply_transform(trimesh.transformations.rotation_matrix(turn, [0.0, 0.0, 1.0]))
-        )
+        strut = box([reach, STRUT_WIDTH, STRUT_WIDTH]).apply_translation([0.5 * reach, 0.0, 0.0])
+        rotation = trimesh.transformations.rotation_matrix(turn, [0.0, 0.0, 1.0])
+        struts.append(strut.apply_transform(rotation))
     return trimesh.boolean.union([duct, motor, *struts])
 
 
 def main() -> None:
-    """Write every mesh, and say its volume."""
+    """Write every mesh, and print its volume."""
     meshes = {
         "hourglass/assets/hourglass": hourglass(),
         "sauvc_auv/assets/pressure_hull": capped_tube(HULL_RADIUS, HULL_CYLINDER, HULL_DOME),
         "sauvc_auv/assets/battery_pod": capped_tube(POD_RADIUS, POD_CYLINDER, POD_DOME),
         "sauvc_auv/assets/frame": frame(),
-        "sauvc_auv/assets/foam": box(FOAM),
+        "sauvc_auv/assets/foam": box(FOAM_SIZE),
         "sauvc_auv/assets/thruster": thruster(),
     }
     for name, mesh in meshes.items():

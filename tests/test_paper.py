@@ -5,6 +5,7 @@ import dataclasses
 import re
 import subprocess
 import sys
+from decimal import Decimal
 from pathlib import Path
 
 import numpy as np
@@ -122,6 +123,29 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
     assert values["convex hull with cuts, error [% of the whole]"][-1] == pytest.approx(
         124.25, abs=0.01
     )
+
+
+NUMBER = re.compile(r"[+-]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["volume", "force", "tilt", "density", "approximations"])
+def test_the_committed_claims_are_what_a_study_measures(name):
+    # studies whose numbers neither a clock nor the last digit of a long run decides
+    _, rows = read_table(PAGE / "claims.csv")
+    committed = [row[:4] for row in rows if row[4].endswith(f"--only {name}")]
+    claims = STUDIES[name].measure(False).claims
+    assert len(claims) == len(committed)
+    for claim, (statement, published, measured, verdict) in zip(claims, committed, strict=True):
+        assert (claim.statement, claim.published, claim.verdict) == (statement, published, verdict)
+        assert NUMBER.split(claim.measured) == NUMBER.split(measured)
+        for number, expected in zip(
+            NUMBER.findall(claim.measured), NUMBER.findall(measured), strict=True
+        ):
+            # one unit in the last digit, which another processor may round otherwise
+            digits = Decimal(expected.replace(",", ""))
+            unit = Decimal(1).scaleb(digits.as_tuple().exponent)
+            assert abs(Decimal(number.replace(",", "")) - digits) <= unit, statement
 
 
 def test_linear_damping_acts_on_velocity_relative_to_the_world():

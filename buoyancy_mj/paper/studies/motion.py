@@ -135,7 +135,7 @@ def _check_oscillation(rows: Sequence[Combination], masses: Sequence[float]) -> 
         "within 0.05 m",
         f"{len(calm)} of {len(rows)} combinations do. Damping against the world, which physics "
         "engines offer and water does not, is enough on both kinds of waves, with the water's "
-        f"drag or without, from these rates up: {always}, for a mass over displacement. "
+        f"drag or without, from these rates up, by mass over displacement: {always}. "
         f"Below them only these combinations do: {'; '.join(sooner) or 'none'}. Without such "
         f"damping the swing is {min(undamped):.2f} to {max(undamped):.2f} m",
         judge(len(calm) == len(rows), bool(calm)),

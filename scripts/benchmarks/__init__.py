@@ -1,0 +1,1 @@
+"""The benchmarks of `scripts/bench.py`: each module measures, and describes what it measured."""

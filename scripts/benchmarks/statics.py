@@ -1,0 +1,144 @@
+"""Vehicles at rest: hydrostatics, equilibria, righting arms, and a whole inspection."""
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from scipy.spatial.transform import Rotation
+
+from benchmarks.peers import capytaine
+from benchmarks.timing import ATTITUDES, least_duration, median_time
+from buoyancy_mj import TriMesh, equilibria, equilibrium, hydrostatics, repair, righting_arm
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.specs import read_spec
+from buoyancy_mj.statics.balance import find_balance
+from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.vessel import Vessel
+
+Results = dict[str, dict[str, float]]
+"""Times [s] by vehicle and by what is computed, and numbers of triangles."""
+
+
+def measure(quick: bool) -> Results:
+    """Measure the AUV, a ball, and a hull of 100,000 triangles."""
+    with tempfile.TemporaryDirectory() as folder:
+        return {
+            name: _measure_vehicle(path, least_duration(quick))
+            for name, path in _write_vehicles(Path(folder)).items()
+        }
+
+
+def _write_vehicles(folder: Path) -> dict[str, Path]:
+    """Write the ball and the hull as MJCF files beside meshes."""
+    ball = trimesh.creation.icosphere(4, radius=0.5)
+    hull = _double_ended_hull()
+    paths = {"sauvc_auv": catalog.models()["sauvc_auv"]}
+    for name, mesh, mass in (
+        ("ball", ball, 250.0),
+        ("hull", trimesh.Trimesh(hull.vertices, hull.faces, process=False), 50.0),
+    ):
+        mesh.export(folder / f"{name}.obj")
+        paths[name] = folder / f"{name}.xml"
+        paths[name].write_text(f"""
+            <mujoco>
+              <asset><mesh name="{name}" file="{name}.obj"/></asset>
+              <worldbody>
+                <body name="{name}">
+                  <freejoint/>
+                  <inertial pos="0 0 -.1" mass="{mass}" diaginertia="9 9 9"/>
+                  <geom type="mesh" mesh="{name}"/>
+                </body>
+              </worldbody>
+            </mujoco>""")
+    return paths
+
+
+def _double_ended_hull() -> TriMesh:
+    """A double-ended hull with a flat deck, some 100,000 triangles."""
+    # vertices of one side, from stem to stem and from keel to deck
+    stations, rows = 224, 112
+    u, v = np.meshgrid(np.linspace(-1.0, 1.0, stations), np.linspace(0.0, 1.0, rows), indexing="ij")
+    breadth = 0.25 * (1.0 - u**2) * (1.0 - (1.0 - v) ** 2)
+    side = np.stack([u, breadth, 0.3 * v - 0.2], axis=-1).reshape(-1, 3)
+
+    # triangles of that side
+    i, j = np.meshgrid(np.arange(stations - 1), np.arange(rows - 1), indexing="ij")
+    a = (i * rows + j).ravel()
+    b = a + rows
+    shell = np.vstack([np.column_stack([a, b + 1, b]), np.column_stack([a, a + 1, b + 1])])
+
+    # triangles between both sides' upper edges
+    n = len(side)
+    edge = rows * np.arange(stations) + rows - 1
+    p = edge[:-1]
+    q = edge[1:]
+    deck = np.vstack([np.column_stack([p, p + n, q]), np.column_stack([q, p + n, q + n])])
+
+    vertices = np.vstack([side, side * [1.0, -1.0, 1.0]])
+    hull, _ = repair(vertices, np.vstack([shell, shell[:, ::-1] + n, deck]))
+    return hull
+
+
+def _measure_vehicle(path: Path, least: float) -> dict[str, float]:
+    """Measure what the statics compute from a model, and the whole command `inspect`."""
+    model = read_spec(path).compile()
+    vessel = build_vessel(model)
+    starts = [
+        [*model.qpos0[:3], *Rotation.from_euler("x", 0.1 + 0.1 * i).as_quat(scalar_first=True)]
+        for i in range(len(ATTITUDES))
+    ]
+    times = {"triangles": float(sum(len(mesh.faces) for mesh in vessel.meshes))}
+    for name, call in (
+        ("hydrostatics", lambda i: hydrostatics(model, qpos=starts[i])),
+        ("equilibrium", lambda i: equilibrium(model, start=starts[i])),
+        ("once more from the same vessel", lambda i: find_balance(vessel, ATTITUDES[i])),
+        ("every equilibrium", lambda _: equilibria(model)),
+        ("righting arm", lambda _: righting_arm(model)),
+    ):
+        times[name] = median_time(call, least, fewest=3)
+
+    # the command
+    started = time.perf_counter()
+    command = [sys.executable, "-m", "buoyancy_mj", "inspect", str(path)]
+    subprocess.run(command, check=True, capture_output=True)
+    times["inspect"] = time.perf_counter() - started
+
+    if capytaine is not None and times["triangles"] < 20_000:
+        times["Capytaine"] = _measure_capytaine(vessel, least)
+    return times
+
+
+def _measure_capytaine(vessel: Vessel, least: float) -> float:
+    """Measure Capytaine's hydrostatics of all meshes joined."""
+    parts = [mesh.transformed(vessel.rotation, vessel.position) for mesh in vessel.meshes]
+    firsts = np.cumsum([0] + [len(part.vertices) for part in parts])
+    mesh = capytaine.Mesh(
+        vertices=np.vstack([part.vertices for part in parts]),
+        faces=np.vstack([part.faces + n for part, n in zip(parts, firsts, strict=False)]),
+    )
+    body = capytaine.FloatingBody(
+        mesh=mesh,
+        dofs=capytaine.rigid_body_dofs(rotation_center=vessel.position),
+        center_of_mass=vessel.position,
+        mass=vessel.mass,
+    )
+    return median_time(lambda _: body.compute_hydrostatics(rho=1000.0, g=9.81), least, fewest=3)
+
+
+def describe(results: Results) -> Iterator[str]:
+    """Describe each vehicle in a line."""
+    for name, row in results.items():
+        times = ", ".join(
+            f"{what} {1e3 * seconds:,.1f} ms"
+            for what, seconds in row.items()
+            if what not in ("triangles", "Capytaine")
+        )
+        yield f"{name}, {row['triangles']:,.0f} triangles: {times}"
+        if "Capytaine" in row:
+            factor = row["Capytaine"] / row["hydrostatics"]
+            yield f"    Capytaine's hydrostatics take {factor:,.0f} x as long"

@@ -1,0 +1,191 @@
+"""Steps of scenes: with water and without, in seas, in batches, as whole runs, and the first."""
+
+import dataclasses
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import mujoco
+import numpy as np
+from mujoco import batch
+
+from buoyancy_mj import JonswapSea, RegularWave, Scene, Simulation, read_scene
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import assemble
+from buoyancy_mj.viz.recording import Recording
+
+Results = dict[str, dict[str, float]]
+"""Values by scene or model of pressure, and by what differs."""
+COMPONENTS = 64
+"""Waves of the sea."""
+COPIES = 64
+"""Simulations of a batch."""
+
+
+def _load_scene(name: str, *settings: str) -> Scene:
+    return read_scene(catalog.scenes()[name], settings)
+
+
+# a step with water and without
+
+
+def measure_step(_quick: bool) -> Results:
+    """Measure steps of scenes, and of one of them by each model of pressure."""
+    results = {
+        name: _mean_step(_load_scene(name)) for name in ("auv_drop_still", "auv_pool", "auv_waves")
+    }
+    for pressure in ("hydrostatic", "froude-krylov"):
+        scene = _load_scene("auv_waves", f'pressure="{pressure}"')
+        results[f"auv_waves, {pressure}"] = _mean_step(scene)
+    return results
+
+
+def _mean_step(scene: Scene) -> dict[str, float]:
+    """Mean time of one step [s] over the whole of a scene, with compiled water and without."""
+    times = {}
+    for label, with_water in (("with", True), ("without", False)):
+        best = np.inf
+        for _ in range(3):
+            model, data, _ = assemble(scene, with_water=with_water)
+            mujoco.mj_forward(model, data)
+            steps = round(scene.duration / scene.timestep)
+            started = time.perf_counter()
+            mujoco.mj_step(model, data, steps)
+            best = min(best, (time.perf_counter() - started) / steps)
+        times[label] = best
+    return times
+
+
+def describe_step(results: Results) -> Iterator[str]:
+    """Describe each scene in a line."""
+    for name, step in results.items():
+        yield (
+            f"mean step of {name}: {step['with'] * 1e6:.1f} us with water, "
+            f"{step['without'] * 1e6:.1f} us without, {step['with'] / step['without']:.1f} x"
+        )
+
+
+# a sea of many waves
+
+
+def measure_sea(_quick: bool) -> Results:
+    """Measure the water's part of a step [s] in one wave and in a sea of the same energy."""
+    scene = _load_scene("auv_sea_state_2", "duration=10")
+    waves = {
+        "one wave": RegularWave(0.3 / np.sqrt(8.0), period=3.5),
+        "sea": JonswapSea(0.3, 3.5, components=COMPONENTS, spreading=10.0),
+    }
+    results: Results = {}
+    for pressure in ("archimedes", "froude-krylov"):
+        results[pressure] = {}
+        for label, wave in waves.items():
+            water = dataclasses.replace(scene.water, waves=wave)
+            step = _mean_step(dataclasses.replace(scene, water=water, pressure=pressure))
+            results[pressure][label] = step["with"] - step["without"]
+    return results
+
+
+def describe_sea(results: Results) -> Iterator[str]:
+    """Describe each model of pressure in a line."""
+    for pressure, row in results.items():
+        yield (
+            f"water's part of a step of auv_sea_state_2, {pressure}: "
+            f"{row['one wave'] * 1e6:.1f} us in one wave, {row['sea'] * 1e6:.1f} us in "
+            f"{COMPONENTS}, {row['sea'] / row['one wave']:.1f} x"
+        )
+
+
+# batches
+
+
+def measure_batch(_quick: bool) -> Results:
+    """Measure simulated over wall time of batches, on one thread and on two."""
+    return {name: _batch_factors(_load_scene(name)) for name in ("auv_drop_still", "auv_waves")}
+
+
+def _batch_factors(scene: Scene) -> dict[str, float]:
+    """Simulated over wall time of copies of a scene's model, by number of threads."""
+    model, data, _ = assemble(scene, with_water=True)
+    factors = {}
+    for threads in (1, 2):
+        copies = batch.Batch(model, COPIES, nthread=threads)
+        copies.bind("qpos")[:] = data.qpos
+        copies.step(nstep=10)
+        best = np.inf
+        for _ in range(3):
+            copies.bind("qpos")[:] = data.qpos
+            copies.bind("qvel")[:] = 0.0
+            started = time.perf_counter()
+            copies.step(nstep=100)
+            best = min(best, time.perf_counter() - started)
+        factors[f"{threads} threads"] = COPIES * 100 * scene.timestep / best
+    return factors
+
+
+def describe_batch(results: Results) -> Iterator[str]:
+    """Describe each scene in a line."""
+    for name, factors in results.items():
+        one = factors["1 threads"]
+        two = factors["2 threads"]
+        yield (
+            f"{COPIES} of {name} in a batch: {one:,.0f} x real time on one thread, "
+            f"{two:,.0f} x on two, {two / one:.2f} x"
+        )
+
+
+# whole runs
+
+
+def measure_real_time(_quick: bool) -> dict[str, float]:
+    """Measure simulated over wall time of a scene, without and with a recording at its rate."""
+    with tempfile.TemporaryDirectory() as folder:
+        headless = _real_time_factor(None)
+        recorded = _real_time_factor(Path(folder) / "run.rrd")
+    return {"headless": headless, "recorded": recorded}
+
+
+def _real_time_factor(record: Path | None) -> float:
+    """Run a scene, and record it into a file if there is one."""
+    simulation = Simulation(_load_scene("auv_waves"))
+    recording = Recording(simulation, record) if record else None
+    for frame in simulation.frames():
+        if recording:
+            recording.add(frame)
+    summary = simulation.summary()
+    if recording:
+        recording.close(summary)
+    return summary.real_time_factor
+
+
+def describe_real_time(results: dict[str, float]) -> Iterator[str]:
+    """Describe both in a line."""
+    yield (
+        f"auv_waves: {results['headless']:.1f} x real time headless, "
+        f"{results['recorded']:.1f} x recorded at 60 Hz"
+    )
+
+
+# the first step
+
+
+def measure_first_step(_quick: bool) -> float:
+    """Measure the time [s] from a fresh interpreter, kernels compiled, through a first step."""
+    code = (
+        "from buoyancy_mj import *; from buoyancy_mj.scenes import catalog; "
+        "Simulation(read_scene(catalog.scenes()['auv_waves'])).step()"
+    )
+    times = []
+    for _ in range(3):
+        started = time.perf_counter()
+        subprocess.run([sys.executable, "-c", code], check=True)
+        times.append(time.perf_counter() - started)
+    return statistics.median(times)
+
+
+def describe_first_step(seconds: float) -> Iterator[str]:
+    """Describe it in a line."""
+    yield f"from a fresh interpreter through the first step of auv_waves: {seconds:.2f} s"

@@ -1,0 +1,147 @@
+"""One submersion by the public call, against other packages on the same meshes and poses."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import trimesh
+from rich.table import Table
+
+from benchmarks.peers import PEERS, Poses, capytaine
+from benchmarks.timing import ATTITUDES, least_duration, median_time
+from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, read_scene, submerge
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.submersion import exact
+from buoyancy_mj.submersion.hull_set import HullSet
+
+LARGE = 5_000
+"""Triangles from which exponents are fitted."""
+_MOST = 330_000
+"""Triangles of the largest mesh, at most."""
+
+Times = dict[str, float]
+"""Times [s] of one mesh by who computes, its number of triangles and bytes per triangle."""
+Results = dict[str, dict[str, Times]]
+"""Times by shape and by number of triangles."""
+
+
+def measure(quick: bool) -> Results:
+    """Measure all meshes."""
+    results: Results = {}
+    for shape, solid in _solids(quick):
+        times = _measure_solid(solid, least_duration(quick))
+        results.setdefault(shape, {})[f"{len(solid.faces)}"] = times
+    return results
+
+
+def _solids(quick: bool) -> list[tuple[str, trimesh.Trimesh]]:
+    """Meshes by shape, about a metre in size, the smallest of each first."""
+    solids = [("sphere", trimesh.creation.icosphere(n)) for n in ((2, 4) if quick else range(2, 8))]
+
+    # an hourglass, a ring and a part of a vehicle
+    cones = trimesh.creation.revolve(
+        [[0, -0.5], [0.5, -0.5], [0.05, 0.0], [0.5, 0.5], [0, 0.5]], sections=32
+    )
+    torus = trimesh.creation.torus(0.6, 0.2, major_sections=32, minor_sections=16)
+    part = Simulation(read_scene(catalog.scenes()["auv_drop_still"])).hulls[0].mesh
+    hull = trimesh.Trimesh(part.vertices / part.radius, part.faces, process=False)
+
+    # each subdivided
+    shapes = (("hourglass", cones.subdivide()), ("torus", torus), ("AUV pressure hull", hull))
+    for shape, solid in shapes:
+        finer = solid
+        for _ in range(1 if quick else 5):
+            solids.append((shape, finer))
+            finer = finer.subdivide()
+    return [(shape, solid) for shape, solid in solids if len(solid.faces) <= _MOST]
+
+
+def _measure_solid(solid: trimesh.Trimesh, least: float) -> Times:
+    """Measure a mesh in five attitudes, its middle a little above or below the surface."""
+    mesh = TriMesh(solid.vertices, solid.faces)
+    wave = Water(waves=RegularWave(0.1, wavelength=10.0))
+    middle = solid.bounds.mean(axis=0)
+    positions = [
+        np.array([0.0, 0.0, 0.2 * np.sin(i)]) - turn @ middle for i, turn in enumerate(ATTITUDES)
+    ]
+    poses = Poses(solid, positions, ATTITUDES)
+
+    times = {
+        "triangles": float(len(solid.faces)),
+        "still": median_time(lambda i: submerge(mesh, positions[i], ATTITUDES[i]), least),
+        "waves": median_time(
+            lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3), least
+        ),
+        "trimesh": median_time(poses.by_trimesh, least),
+        "scipy hull": median_time(poses.by_scipy, least),
+        "manifold3d": median_time(poses.by_manifold, least),
+    }
+    if capytaine is not None and len(solid.faces) < 100_000:
+        fewest = 1 if len(solid.faces) > 10_000 else 3
+        times["Capytaine"] = median_time(poses.by_capytaine, least, fewest)
+    times["bytes per triangle"] = _bytes(mesh) / len(solid.faces)
+    return times
+
+
+def _bytes(mesh: TriMesh) -> int:
+    """Memory of a mesh and of what is packed of it."""
+    packed = exact.PackedHulls(HullSet([mesh]), Water())
+    arrays = [*packed.hulls, *packed.scratch, packed.results, mesh.vertices, mesh.faces]
+    return sum(values.nbytes for values in arrays)
+
+
+def _exponent(rows: list[Times], column: str) -> float:
+    """Exponent of the power law through times against triangles, from `LARGE` ones up."""
+    large = [row for row in rows if column in row and row["triangles"] >= LARGE]
+    if len(large) < 2:
+        return float("nan")
+    points = np.log([(row["triangles"], row[column]) for row in large])
+    return float(np.polyfit(*points.T, 1)[0])
+
+
+def describe(results: Results) -> Iterator[Table | str]:
+    """Describe all meshes in a table, and the exponents of each shape."""
+    table = Table(title="one submersion, median; factors are against still water")
+    for column in ("mesh", "triangles", "still water", "waves", *PEERS, "bytes per triangle"):
+        table.add_column(column, justify="right")
+    for shape, rows in results.items():
+        for row in rows.values():
+            times = (f"{row[surface] * 1e6:,.0f} us" for surface in ("still", "waves"))
+            factors = (
+                f"{row[peer] / row['still']:,.0f} x" if peer in row else "" for peer in PEERS
+            )
+            size = f"{row['bytes per triangle']:.0f}"
+            table.add_row(shape, f"{row['triangles']:,.0f}", *times, *factors, size)
+    yield table
+
+    for shape, rows in results.items():
+        still, waves = (_exponent(list(rows.values()), surface) for surface in ("still", "waves"))
+        yield (
+            f"{shape}: time grows as triangles^{still:.2f} on still water, ^{waves:.2f} in waves, "
+            f"from {LARGE:,} up"
+        )
+
+
+def plot(path: Path, results: Results) -> None:
+    """Draw time against triangles of the sphere, with the fitted exponents."""
+    from matplotlib.figure import Figure
+
+    rows = list(results["sphere"].values())
+    figure = Figure(figsize=(7, 4.5), layout="constrained")
+    axes = figure.add_subplot()
+    names = {"still": "still water", "waves": "in waves"} | {peer: peer for peer in PEERS}
+    for column, name in names.items():
+        points = [(row["triangles"], row[column] * 1e6) for row in rows if column in row]
+        if points:
+            exponent = _exponent(rows, column)
+            label = f"{name}, n^{exponent:.2f}" if np.isfinite(exponent) else name
+            width = 1.2 if column in PEERS else 2.5
+            axes.loglog(*zip(*points, strict=True), marker="o", lw=width, label=label)
+    axes.set(
+        xlabel="triangles",
+        ylabel="time of one submersion [us]",
+        title="a sphere in random attitudes",
+    )
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+    figure.savefig(path, dpi=110)
