@@ -223,7 +223,7 @@ def test_every_file_and_every_name_in_the_text_exists(page):
 
 
 def resolve(name):
-    """A module of the package, or what stands in one."""
+    """Find a module of the package, or what stands in one."""
     module, parts = buoyancy_mj, name.split(".")
     while parts:
         dotted = f"{module.__name__}.{parts[0]}"
@@ -236,7 +236,9 @@ def resolve(name):
     item = module
     for part in parts:
         item = getattr(item, part)
-    return item
+        # made there, not only imported
+        home = getattr(item, "__module__", None) or ""
+        assert not home.startswith("buoyancy_mj") or home == module.__name__, name
 
 
 def test_the_first_page_is_short_and_names_the_scripts():
