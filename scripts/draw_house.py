@@ -27,7 +27,7 @@ PACKAGE = "buoyancy_mj"
 PAGE, PICTURE = ROOT / "docs" / "architecture.md", ROOT / "docs" / "architecture.png"
 MARKS = ("<!-- written by scripts/draw_house.py -->\n", "<!-- end -->\n")
 """What stands before and after the table on the page."""
-WIDTH, HEIGHT, GAP = 12.0, 1.05, 0.75
+WIDTH, HEIGHT, GAP = 12.0, 1.1, 0.72
 """Width of the picture, height of a room and distance between floors."""
 EVERYWHERE = {"errors", "records"}
 """Small rooms that serve any other, so that their streams would say nothing."""
@@ -285,8 +285,8 @@ def _draw_room(axes: Axes, room: Room, box: Box) -> None:
     axes.text(left + 0.16, box.y + 0.28, room.name, fontsize=17, weight="bold", **style)
     size = f"{round(room.lines, -2):,} lines"
     axes.text(right - 0.16, box.y + 0.29, size, fontsize=11, ha="right", **style | {"color": WATER})
-    idea = "\n".join(textwrap.wrap(room.idea, int(10.4 * box.width))[:2])
-    axes.text(left + 0.16, box.y + 0.73, idea, fontsize=11.5, linespacing=1.15, **style)
+    idea = textwrap.fill(room.idea, int(9.7 * box.width), max_lines=2, placeholder=" ...")
+    axes.text(left + 0.16, box.y + 0.76, idea, fontsize=12.5, linespacing=1.15, **style)
 
 
 if __name__ == "__main__":

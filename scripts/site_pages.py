@@ -21,6 +21,7 @@ from latex2mathml.converter import convert
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
 
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.loads.damping import VISCOUS, Damping
@@ -76,6 +77,14 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for name, text in (pages | reference_pages()).items():
         files.append(File.generated(config, name, content=text))
     return files
+
+
+def on_page_markdown(markdown: str, page: Page, **_: Any) -> str:
+    """Lead links to files at the top of the repository to the pages that they become."""
+    up = "../" * page.file.src_uri.count("/")
+    for name, copy in COPIES.items():
+        markdown = markdown.replace(f"]({up}../{name}", f"]({up}{copy}")
+    return markdown
 
 
 def on_page_content(content: str, **_: Any) -> str:

@@ -1,4 +1,4 @@
-"""Everything that can be said of one model before it goes to sea.
+"""Everything about one model before it goes to sea.
 
 In: a model and its still water.
 Out: an `Inspection`: verdicts on geoms and meshes, statics, and their report and charts.

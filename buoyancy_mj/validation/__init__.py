@@ -1,4 +1,4 @@
-"""Published experiments and closed forms beside what comes out here.
+"""Published numbers beside what comes out here.
 
 In: published numbers with their sources, and the models that ship.
 Out: one row for each quantity, its verdict, and the page that holds them all.
