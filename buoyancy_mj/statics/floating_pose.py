@@ -61,7 +61,7 @@ class FloatingPose:
 
     @property
     def energy(self) -> float:
-        """Potential energy of weight and buoyancy [J] over the level: `force` is minus its slope."""
+        """Potential energy of weight and buoyancy [J]; `force` is minus its slope."""
         height = self.position[2] - self.vessel.water.level
         return float(self.vessel.weight * height - self.buoyancy * (height + self.arm[2]))
 
