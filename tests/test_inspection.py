@@ -22,7 +22,7 @@ from buoyancy_mj import (
 from buoyancy_mj.cli import app
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.inspection.json_report import to_json
-from buoyancy_mj.inspection.report import sections, to_markdown
+from buoyancy_mj.inspection.report import list_sections, to_markdown
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
@@ -160,7 +160,7 @@ def doctor(vertices, faces):
     """The part, and all that the report says of meshes."""
     found = inspect_model(mesh_model(vertices, faces))
     (part,) = found.geoms
-    text = "\n".join(note for section in sections(found) for note in section.notes)
+    text = "\n".join(note for section in list_sections(found) for note in section.notes)
     return part, text
 
 

@@ -141,6 +141,19 @@ def find_equilibria(vessel: Vessel) -> tuple[Equilibrium, ...]:
     return tuple(sorted(result, key=lambda rest: rest.energy))
 
 
+def move_to_rest(vessel: Vessel, rest: Equilibrium) -> Vessel:
+    """A copy of a vessel, moved to where it comes to rest."""
+    start = int(vessel.model.jnt_qposadr[vessel.model.body_jntadr[vessel.root]])
+    rotation = np.empty(9)
+    mujoco.mju_quat2Mat(rotation, rest.qpos[start + 3 : start + 7])
+    return dataclasses.replace(
+        vessel,
+        qpos=rest.qpos,
+        position=rest.hydrostatics.centre_of_gravity,
+        rotation=rotation.reshape(3, 3),
+    )
+
+
 def _describe(pose: FloatingPose, iterations: int) -> Equilibrium:
     """Describe a pose in balance, brought to the place and heading of the vessel's root body."""
     vessel = pose.vessel

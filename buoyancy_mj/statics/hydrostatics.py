@@ -21,10 +21,10 @@ class Hydrostatics:
 
     Axes are z up, x horizontal along the vessel's heading, y to port. Motions are in the order
     surge, sway, heave, roll, pitch, yaw, about the centre of gravity (Newman 1977). In Fossen's
-    axes, z down and y to starboard, a matrix M of these is D M D with D = diag(1, -1, -1, 1, -1, -1).
+    axes, z down and y to starboard, a matrix M becomes D M D with D = diag(1, -1, -1, 1, -1, -1).
 
-    Metacentric heights are those of the pose, at rest or not: displacement means the water displaced
-    in that pose. Without a waterplane they are those of a submerged body, GM = BG.
+    Metacentric heights are those of the pose, at rest or not: displacement means the water that
+    the vessel displaces there. Without a waterplane they are those of a submerged body, GM = BG.
     """
 
     density: float
