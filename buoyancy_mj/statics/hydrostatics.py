@@ -13,6 +13,12 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.heading_axes import (
+    compute_mass_matrix,
+    compute_stiffness,
+    measure_waterline,
+    rotate_to_heading,
+)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -224,7 +230,7 @@ def compute_hydrostatics(pose: FloatingPose) -> Hydrostatics:
     """Compute the hydrostatics of a vessel in a pose."""
     vessel = pose.vessel
     attitude = Attitude.from_matrix(pose.rotation)
-    axes = _rotate_to_heading(attitude.heading)
+    axes = rotate_to_heading(attitude.heading)
     low, _ = vessel.heights(pose.rotation)
 
     # a waterplane of rounding errors is none
@@ -237,7 +243,7 @@ def compute_hydrostatics(pose: FloatingPose) -> Hydrostatics:
         flotation = np.append(pose.position[:2] + middle, vessel.water.level)
         about_middle = pose.waterplane.second_moments - area * np.outer(middle, middle)
         moments = axes[:2, :2] @ about_middle @ axes[:2, :2].T
-        length, beam = _measure_waterline(pose, axes)
+        length, beam = measure_waterline(pose, axes)
 
     return Hydrostatics(
         density=vessel.water.density,
@@ -258,45 +264,9 @@ def compute_hydrostatics(pose: FloatingPose) -> Hydrostatics:
         heading=attitude.heading,
         trim=attitude.trim,
         heel=attitude.heel,
-        mass_matrix=_compute_mass_matrix(pose, axes),
-        stiffness=_compute_stiffness(pose, axes),
+        mass_matrix=compute_mass_matrix(pose, axes),
+        stiffness=compute_stiffness(pose, axes),
     )
-
-
-def _rotate_to_heading(heading: float) -> NDArray[np.float64]:
-    """Rotation (3, 3) from the world's axes to those along, across and over a heading [rad]."""
-    c, s = math.cos(heading), math.sin(heading)
-    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-
-
-def _measure_waterline(pose: FloatingPose, axes: NDArray[np.float64]) -> tuple[float, float]:
-    """Length and beam of the waterline [m], along axes (3, 3)."""
-    turned = pose_vessel(pose.vessel, pose.position, axes @ pose.rotation).waterplane
-    length, beam = turned.high - turned.low
-    return float(length), float(beam)
-
-
-def _compute_mass_matrix(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mass and inertia about the centre of gravity (6, 6), in axes (3, 3)."""
-    vessel, rotation = pose.vessel, axes @ pose.rotation
-    matrix = np.zeros((6, 6))
-    matrix[:3, :3] = vessel.mass * np.eye(3)
-    matrix[3:, 3:] = rotation @ vessel.inertia @ rotation.T
-    return matrix
-
-
-def _compute_stiffness(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Hydrostatic stiffness (6, 6), in axes (3, 3)."""
-    matrix = np.zeros((6, 6))
-
-    # heave, roll and pitch
-    turn = np.eye(3)
-    turn[1:, 1:] = axes[:2, :2]
-    matrix[2:5, 2:5] = turn @ pose.stiffness @ turn.T
-
-    # the moments of buoyancy turn with the heading
-    matrix[3:5, 5] = -pose.buoyancy * (axes[:2, :2] @ pose.arm[:2])
-    return matrix
 
 
 def _check_added_mass(added_mass: ArrayLike | None) -> NDArray[np.float64]:
