@@ -94,7 +94,7 @@ def inspect_model(
     if not sound:
         return Inspection(title, water, geoms, (), (), tuple(problems))
 
-    # the hulls; repairs of meshes are told with the meshes
+    # the hulls; the report names repairs with the meshes, so they are no problems here
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", BuoyancyWarning)
         hulls = build_hulls(model, sound, forms, fills)

@@ -100,7 +100,7 @@ def inspect_vessel(vessel: Vessel, hulls: Sequence[Hull]) -> VesselInspection:
     rests: tuple[Equilibrium, ...] = ()
     righting: RightingArm | None = None
 
-    # a search that fails leaves the rest untold
+    # a search that fails becomes a note
     if vessel.free and vessel.reserve >= -NEUTRAL * vessel.mass:
         try:
             rest = find_equilibrium(vessel)

@@ -15,6 +15,7 @@ from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.distinct_poses import is_same_pose
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
 from buoyancy_mj.statics.vessel import Vessel
 
@@ -180,8 +181,8 @@ def _describe(pose: FloatingPose, iterations: int) -> Equilibrium:
 
 def _compute_eigenvalues(at: Hydrostatics) -> NDArray[np.float64]:
     """Eigenvalues (3,) [1/s^2] of stiffness over mass in heave, roll and pitch, ascending."""
-    motions = slice(2, 5)
-    stiffness = at.stiffness[motions, motions]
-    inverse = np.linalg.inv(np.linalg.cholesky(at.mass_matrix[motions, motions]))
+    stiffness = at.stiffness[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
+    mass_matrix = at.mass_matrix[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
+    inverse = np.linalg.inv(np.linalg.cholesky(mass_matrix))
     symmetric = 0.5 * (stiffness + stiffness.T)
     return np.asarray(np.linalg.eigvalsh(inverse @ symmetric @ inverse.T), float)

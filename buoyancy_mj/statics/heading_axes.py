@@ -7,6 +7,11 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 
+HEAVE_ROLL_PITCH = slice(2, 5)
+"""Motions that still water restores, of surge, sway, heave, roll, pitch, yaw."""
+_ROLL_PITCH = slice(3, 5)
+_YAW = 5
+
 
 def rotate_to_heading(heading: float) -> NDArray[np.float64]:
     """Rotation (3, 3) from the world's axes to x along a heading [rad], y to port, z up."""
@@ -37,8 +42,8 @@ def compute_stiffness(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[
     # heave, roll and pitch
     turn = np.eye(3)
     turn[1:, 1:] = axes[:2, :2]
-    matrix[2:5, 2:5] = turn @ pose.stiffness @ turn.T
+    matrix[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH] = turn @ pose.stiffness @ turn.T
 
     # the moments of buoyancy turn with the heading
-    matrix[3:5, 5] = -pose.buoyancy * (axes[:2, :2] @ pose.arm[:2])
+    matrix[_ROLL_PITCH, _YAW] = -pose.buoyancy * (axes[:2, :2] @ pose.arm[:2])
     return matrix

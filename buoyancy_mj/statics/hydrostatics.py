@@ -14,6 +14,7 @@ from buoyancy_mj.statics.attitude import Attitude
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.heading_axes import (
+    HEAVE_ROLL_PITCH,
     compute_mass_matrix,
     compute_stiffness,
     measure_waterline,
@@ -154,9 +155,8 @@ class Hydrostatics:
         Raises:
             ModelError: the added mass has another shape, or is not finite.
         """
-        motions = slice(2, 5)
-        inertia = np.diag(self.mass_matrix + _check_added_mass(added_mass))[motions]
-        stiffness = np.diag(self.stiffness)[motions]
+        inertia = np.diag(self.mass_matrix + _expand_added_mass(added_mass))[HEAVE_ROLL_PITCH]
+        stiffness = np.diag(self.stiffness)[HEAVE_ROLL_PITCH]
         with np.errstate(divide="ignore", invalid="ignore"):
             squared = np.where(stiffness > 0.0, inertia / stiffness, math.inf)
         return 2.0 * math.pi * np.sqrt(squared)
@@ -179,7 +179,7 @@ class Hydrostatics:
         Raises:
             ModelError: the added mass has another shape, or is not finite.
         """
-        inertia = self.mass_matrix + _check_added_mass(added_mass)
+        inertia = self.mass_matrix + _expand_added_mass(added_mass)
         values, vectors = np.linalg.eig(np.linalg.solve(inertia, self.stiffness))
 
         # what swings
@@ -269,7 +269,7 @@ def compute_hydrostatics(pose: FloatingPose) -> Hydrostatics:
     )
 
 
-def _check_added_mass(added_mass: ArrayLike | None) -> NDArray[np.float64]:
+def _expand_added_mass(added_mass: ArrayLike | None) -> NDArray[np.float64]:
     """An added mass as a matrix (6, 6); zero if None."""
     if added_mass is None:
         return np.zeros((6, 6))
