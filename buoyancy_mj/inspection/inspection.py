@@ -2,7 +2,7 @@
 
 import dataclasses
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import mujoco
@@ -95,11 +95,9 @@ def inspect_model(
         return Inspection(title, water, geoms, (), (), tuple(problems))
 
     # the hulls; the report names repairs with the meshes, so they are no problems here
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always", BuoyancyWarning)
-        hulls = build_hulls(model, sound, forms, fills)
+    hulls, notices = _build_hulls(model, sound, forms, fills)
     repairs = {notice for geom in geoms if geom.diagnosis for notice in geom.diagnosis.notices}
-    notices = [str(entry.message) for entry in caught if str(entry.message) not in repairs]
+    notices = [notice for notice in notices if notice not in repairs]
 
     # the vessels
     vessels = []
@@ -117,6 +115,19 @@ def inspect_model(
         vessels=tuple(vessels),
         problems=(*problems, *notices),
     )
+
+
+def _build_hulls(
+    model: mujoco.MjModel,
+    geoms: Sequence[int],
+    forms: Mapping[int, str],
+    fills: Mapping[int, float],
+) -> tuple[tuple[Hull, ...], list[str]]:
+    """Hulls of geoms, and the warnings that came with them."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", BuoyancyWarning)
+        hulls = build_hulls(model, geoms, forms, fills)
+    return hulls, [str(entry.message) for entry in caught]
 
 
 def _find_overlaps(model: mujoco.MjModel, hulls: Sequence[Hull]) -> tuple[Overlap, ...]:

@@ -50,9 +50,8 @@ def find_heave_balance(
         )
     if vessel.reserve <= tolerance:
         _, high = vessel.heights(rotation)
-        return pose_vessel(
-            vessel, [*vessel.position[:2], min(z, vessel.water.level - high)], rotation
-        )
+        z = min(z, vessel.water.level - high)
+        return pose_vessel(vessel, [*vessel.position[:2], z], rotation)
     return _find_floating_height(vessel, rotation, z)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.meshes import shapes
-from buoyancy_mj.statics.ballast_program import LEAST
+from buoyancy_mj.statics.ballast_program import NEGLIGIBLE
 from buoyancy_mj.statics.ballast_sites import BallastSite
 from buoyancy_mj.statics.building import steiner
 from buoyancy_mj.statics.vessel import Vessel, VesselHull
@@ -59,7 +59,7 @@ def merge_sites(
             if (site.kind, site.name) == (kind, name)
         ]
         mass = sum(share for _, share in shares)
-        if mass > LEAST * vessel.mass:
+        if mass > NEGLIGIBLE * vessel.mass:
             middle = sum((share / mass * site.point for site, share in shares), np.zeros(3))
             first, _ = shares[0]
             position = middle + vessel.centre_of_gravity

@@ -13,7 +13,7 @@ from buoyancy_mj.statics.ballast_sites import BallastSite
 from buoyancy_mj.statics.floating_pose import FloatingPose
 from buoyancy_mj.statics.vessel import Vessel
 
-LEAST = 1e-6
+NEGLIGIBLE = 1e-6
 """Part of the mass of a vessel below which nothing is added."""
 _WEIGHT, _LEVEL, _HEIGHT = slice(0, 1), slice(0, 3), 3
 """Rows of `_Equations`: weight; weight and moments; height of B over G, if one is asked for."""
@@ -28,7 +28,7 @@ class _Equations(NamedTuple):
     """What all of them must do (3 or 4,): mass [kg], moments along x and y, and height [kg m]."""
 
     def select(self, rows: slice) -> "_Equations":
-        """Some of the equations."""
+        """Select some of the equations."""
         return _Equations(self.rows[rows], self.targets[rows])
 
 
@@ -47,13 +47,13 @@ def find_least_masses(
         BallastError: no masses at these sites do that; the message says what they could.
     """
     vessel = pose.vessel
-    equations = _set_up(pose, sites, reserve, bg)
+    equations = _set_up_equations(pose, sites, reserve, bg)
 
     # nothing is missing
     missing, moments = equations.targets[0], equations.targets[1:]
     if (
-        np.abs(missing) <= LEAST * vessel.mass
-        and np.abs(moments).max() <= LEAST * vessel.mass * vessel.radius
+        np.abs(missing) <= NEGLIGIBLE * vessel.mass
+        and np.abs(moments).max() <= NEGLIGIBLE * vessel.mass * vessel.radius
     ):
         return np.zeros(len(sites))
     if not sites:
@@ -70,10 +70,10 @@ def find_least_masses(
     return np.asarray(solution.x)
 
 
-def _set_up(
+def _set_up_equations(
     pose: FloatingPose, sites: Sequence[BallastSite], reserve: float, bg: float | None
 ) -> _Equations:
-    """Weights and moments about the centre of gravity of the vessel as it is."""
+    """Set up weights, and moments about the centre of gravity of the vessel as it is."""
     vessel = pose.vessel
     displacement = vessel.water.density * pose.volume
     arms = np.array([pose.rotation @ site.point for site in sites]).reshape(-1, 3)
