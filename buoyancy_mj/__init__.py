@@ -47,8 +47,8 @@ from buoyancy_mj.sea.waves import RegularWave as RegularWave
 from buoyancy_mj.sea.waves import wavenumber as wavenumber
 from buoyancy_mj.settings.settings import Settings as Settings
 from buoyancy_mj.statics.ballast import Ballast as Ballast
-from buoyancy_mj.statics.ballast import BallastItem as BallastItem
 from buoyancy_mj.statics.ballast import ballast as ballast
+from buoyancy_mj.statics.ballast_items import BallastItem as BallastItem
 from buoyancy_mj.statics.equilibrium import Equilibrium as Equilibrium
 from buoyancy_mj.statics.equilibrium import equilibria as equilibria
 from buoyancy_mj.statics.equilibrium import equilibrium as equilibrium

@@ -25,7 +25,8 @@ RAFT = """<mujoco><worldbody><body name="raft"><freejoint/>
   <geom name="hull" type="box" size="1 .5 .3" mass="300"/>
   <site name="ballast_fore" pos=".8 0 -.25"/><site name="ballast_aft" pos="-.8 0 -.25"/>
   <site name="ballast_port" pos="0 .4 -.25"/><site name="ballast_starboard" pos="0 -.4 -.25"/>
-  <site name="keel" pos="0 0 -.8"/><site name="foam_top" pos="0 0 .6"/><site name="inside" pos="0 0 0"/>
+  <site name="keel" pos="0 0 -.8"/><site name="foam_top" pos="0 0 .6"/>
+  <site name="inside" pos="0 0 0"/>
 </body></worldbody></mujoco>"""
 
 
@@ -119,7 +120,8 @@ def test_inside_a_box_one_mass_does_it():
 def test_joints_are_held_and_another_pose_needs_another_ballast():
     text = RAFT.replace(
         "</body></worldbody>",
-        '<body name="arm" pos="0 0 .3"><joint name="arm" axis="1 0 0"/><geom name="arm" type="capsule" size=".03" '
+        '<body name="arm" pos="0 0 .3"><joint name="arm" axis="1 0 0"/>'
+        '<geom name="arm" type="capsule" size=".03" '
         'fromto="0 0 0 0 0 .5" mass="20"/></body></body></worldbody>',
     )
     spec = raft(text)
@@ -176,7 +178,8 @@ def test_the_wanted_heel_is_where_the_righting_arm_vanishes():
         ),
         (
             {"draft": 0.7},
-            r"a draft of 0\.7 m is wanted of hulls 0\.6 m tall at this attitude; it must be above 0 and at most",
+            r"a draft of 0\.7 m is wanted of hulls 0\.6 m tall at this attitude; "
+            "it must be above 0 and at most",
         ),
         ({"draft": -0.1}, r"a draft of -0\.1 m is wanted"),
         ({"draft": 0.4, "masses": [[0.5, 0, 0], [0.9, 0.1, 0.1]]}, "these places cannot level it"),

@@ -1,4 +1,4 @@
-"""Rest poses: classic floating bodies, where the simulated vehicle comes to rest, and vessels that cannot float."""
+"""Rest poses: classic bodies, where the simulated vehicle comes to rest, what cannot float."""
 
 import math
 
@@ -59,8 +59,8 @@ def test_a_box_floats_on_either_face_and_nowhere_else():
 
 @pytest.mark.parametrize(
     ("ratio", "angle"),
-    # a long square log: flat for c < (3 - sqrt 3) / 6 = 0.2113, on edge from 9/32 to 23/32, between them at an angle;
-    # at a quarter tan = 1/2 (Erdos, Schibler, Herndon 1992, Am. J. Phys. 60, 335)
+    # a long square log: flat for c < (3 - sqrt 3) / 6 = 0.2113, on edge from 9/32 to 23/32, between
+    # them at an angle; at a quarter tan = 1/2 (Erdos, Schibler, Herndon 1992, Am. J. Phys. 60, 335)
     [
         (0.2, 0.0),
         (0.25, math.degrees(math.atan(0.5))),
@@ -165,9 +165,11 @@ def test_heading_and_place_are_kept():
 
 def test_joints_are_held():
     model = mujoco.MjModel.from_xml_string(
-        """<mujoco><worldbody><body name="raft"><freejoint/><geom type="box" size="1 .5 .2" mass="200"/>
+        """<mujoco><worldbody><body name="raft"><freejoint/>
+        <geom type="box" size="1 .5 .2" mass="200"/>
         <body pos="0 0 .2"><joint name="boom" type="hinge" axis="1 0 0"/>
-        <geom type="capsule" fromto="0 0 0 0 0 1" size=".02" mass="10"/></body></body></worldbody></mujoco>"""
+        <geom type="capsule" fromto="0 0 0 0 0 1" size=".02" mass="10"/></body></body>
+        </worldbody></mujoco>"""
     )
     upright, aside = (equilibrium(model, start=[*tilted(0.0), angle]) for angle in (0.0, -0.8))
     assert upright.hydrostatics.heel == pytest.approx(0.0, abs=1e-9)
@@ -213,8 +215,8 @@ def test_a_hair_of_reserve_is_enough_to_float():
 
 def test_what_hangs_on_joints_is_not_free_to_float():
     model = mujoco.MjModel.from_xml_string(
-        '<mujoco><worldbody><body name="buoy"><joint type="slide" axis="0 0 1"/><geom type="sphere" size=".5" mass="100"/>'
-        "</body></worldbody></mujoco>"
+        '<mujoco><worldbody><body name="buoy"><joint type="slide" axis="0 0 1"/>'
+        '<geom type="sphere" size=".5" mass="100"/></body></worldbody></mujoco>'
     )
     with pytest.raises(
         ModelError,

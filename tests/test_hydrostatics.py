@@ -1,4 +1,4 @@
-"""Closed forms, published ships and vehicles, another code, and finite differences of the exact forces."""
+"""Closed forms, published ships and vehicles, another code, finite differences of the forces."""
 
 import math
 
@@ -55,7 +55,8 @@ def test_a_box_has_its_metacentric_heights_and_periods():
     ("beam", "stable"), [(0.30, False), (0.7071, True), (0.8165 * 0.999 * 0.5, False)]
 )
 def test_the_floating_cuboid_of_openfoam_wants_to_tip_and_a_wide_one_not(beam, stable):
-    # P21, OpenFOAM's floatingObject: 0.3 x 0.2 x 0.5 tall, 500 kg/m^3, draft 0.25, upright GM = 0.125 + B^2 / 3 - 0.25
+    # P21, OpenFOAM's floatingObject: 0.3 x 0.2 x 0.5 tall, 500 kg/m^3, draft 0.25, upright GM =
+    # 0.125 + B^2 / 3 - 0.25
     found = hydrostatics(vessels.box((0.1, 0.5 * beam, 0.25), 500.0 * 0.2 * beam * 0.5))
     assert found.draft == pytest.approx(0.25, rel=1e-9)
     assert found.GMt == pytest.approx(0.125 + beam**2 / 3.0 - 0.25, rel=1e-9)
@@ -84,7 +85,8 @@ def test_cones_have_their_metacentric_height(ratio, draft, gm, apex_up):
 
 
 def test_the_wigley_hull_has_its_closed_forms():
-    # P10 with L 2.5, B 0.25, T 0.15625: V 4/9 LBT, Awp 2/3 LB, VCB -3/8 T, BM_T 3/35 B^2/T, BM_L 3/40 L^2/T
+    # P10 with L 2.5, B 0.25, T 0.15625: V 4/9 LBT, Awp 2/3 LB, VCB -3/8 T, BM_T 3/35 B^2/T, BM_L
+    # 3/40 L^2/T
     found = hydrostatics(vessels.of_mesh(vessels.wigley(), 43.4))
     assert found.volume == pytest.approx(0.0434028, rel=1e-4)
     assert found.waterplane_area == pytest.approx(2 / 3 * 2.5 * 0.25, rel=1e-4)
@@ -115,8 +117,9 @@ def test_turned_over_a_body_keeps_the_product_of_volume_and_metacentric_height(s
 
 
 def test_the_tanker_of_mss_has_the_hydrostatics_that_wamit_gives():
-    # P12: WAMIT volumes 92309.5, 92313.2, 92314.5, CB (3.9259, 0, -4.8155), C33 10221.5, C35 31916, C44 9.2149e5 from
-    # the centroids of its panels (an exact cut gives 9.25441e5), C55 4.3472e7; about CG (3.93, 0, 2.5), over rho g
+    # P12: WAMIT volumes 92309.5, 92313.2, 92314.5, CB (3.9259, 0, -4.8155), C33 10221.5, C35 31916,
+    # C44 9.2149e5 from the centroids of its panels (an exact cut gives 9.25441e5), C55 4.3472e7;
+    # about CG (3.93, 0, 2.5), over rho g
     mesh, notices = repair(*vessels.tanker())
     assert "36 hole(s) with 392 edges" in notices[-1]
     model = vessels.of_mesh(mesh, 1025.0 * 92313.2, (3.93, 0.0, 2.5))
@@ -136,7 +139,8 @@ def test_the_tanker_of_mss_has_the_hydrostatics_that_wamit_gives():
 
 
 def test_the_float_of_rm3_has_its_volume_and_waterplane():
-    # P13: at z = 0.72 of its frame the mesh has V 728.382, Awp 284.763; WAMIT's panels gave 725.834, 285.52
+    # P13: at z = 0.72 of its frame the mesh has V 728.382, Awp 284.763; WAMIT's panels gave
+    # 725.834, 285.52
     found = hydrostatics(vessels.of_mesh(vessels.rm3_float(), 725834.0), qpos=at(-0.72))
     assert found.volume == pytest.approx(728.382, abs=1e-3)
     assert found.waterplane_area == pytest.approx(284.763, abs=1e-3)
@@ -146,13 +150,15 @@ def test_the_float_of_rm3_has_its_volume_and_waterplane():
 def submerged(mass, volume, over, inertia, density):
     """A deeply submerged ellipsoid of a volume, its centre of gravity below its middle."""
     a = (volume / (4 / 3 * math.pi)) ** (1 / 3)
-    inertial = f'<inertial pos="0 0 {-over}" mass="{mass}" diaginertia="{inertia[0]} {inertia[1]} {inertia[2]}"/>'
+    moments = " ".join(map(str, inertia))
+    inertial = f'<inertial pos="0 0 {-over}" mass="{mass}" diaginertia="{moments}"/>'
     model = vessels.of_geoms(f'<geom type="ellipsoid" size="{1.5 * a} {a} {a / 1.5}"/>', inertial)
     return hydrostatics(model, Water(density=density), qpos=at(-5.0))
 
 
 def test_the_bluerov2_heavy_swings_with_its_periods():
-    # P18: von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898, table of parameters; B z_b phi over I, and over I + A
+    # P18: von Benzon et al. 2022, J. Mar. Sci. Eng. 10(12):1898, table of parameters; B z_b phi
+    # over I, and over I + A
     found = submerged(13.5, 0.0134, 0.01, (0.26, 0.23, 0.37), 1000.0)
     assert found.reserve == pytest.approx(-0.1, rel=1e-9)
     assert found.natural_periods()[1:] == pytest.approx([2.794, 2.628], rel=1e-3)
@@ -162,13 +168,15 @@ def test_the_bluerov2_heavy_swings_with_its_periods():
     assert (found.waterplane_area, found.GMt, found.GMl) == pytest.approx(
         (0.0, 0.01, 0.01), rel=1e-9
     )
-    # the restoring matrix of Fossen for W and B at r_g = 0, r_b = (0, 0, -z_b): diag(z_b B, z_b B) for small angles
+    # the restoring matrix of Fossen for W and B at r_g = 0, r_b = (0, 0, -z_b): diag(z_b B, z_b B)
+    # for small angles
     assert found.stiffness[3:5, 3:5] == pytest.approx(np.diag([1.31454] * 2), rel=1e-6)
 
 
 def test_the_remus_100_swings_with_its_periods():
-    # P19: Fossen's Python vehicle simulator: a spheroid L 1.6, D 0.19 in rho 1026, W = B, CG 0.02 m below CB, added
-    # moment in roll 0.3 I_x; periods 0.8523 and 5.1107 s dry, 1.0123 s and 6.958 s about CB, 0.9917 and 6.953 coupled
+    # P19: Fossen's Python vehicle simulator: a spheroid L 1.6, D 0.19 in rho 1026, W = B, CG 0.02 m
+    # below CB, added moment in roll 0.3 I_x; periods 0.8523 and 5.1107 s dry, 1.0123 s and 6.958 s
+    # about CB, 0.9917 and 6.953 coupled
     a, b, density, drop = 0.8, 0.095, 1026.0, 0.02
     mass = density * 4 / 3 * math.pi * a * b * b
     ix, iy = 0.4 * mass * b * b, 0.2 * mass * (a * a + b * b)
@@ -195,9 +203,10 @@ def test_the_remus_100_swings_with_its_periods():
 
 
 def test_the_otter_has_its_metacentres_and_restoring_matrix():
-    # P19: Otter of Fossen's simulator: 80 kg, draft 0.195122, nabla 0.0780488, Awp 0.75, KB 0.136585, BM_T 1.537912,
-    # BM_L 3.416667, KG 0.441997, GM_T 1.2325, GM_L 3.111255, G33 7541.44, G44 967.27, G55 2441.71; its draft is a
-    # formula and no mesh: this one has two wall-sided pontoons on narrower feet that have just these numbers
+    # P19: Otter of Fossen's simulator: 80 kg, draft 0.195122, nabla 0.0780488, Awp 0.75, KB
+    # 0.136585, BM_T 1.537912, BM_L 3.416667, KG 0.441997, GM_T 1.2325, GM_L 3.111255, G33 7541.44,
+    # G44 967.27, G55 2441.71; its draft is a formula and no mesh: this one has two wall-sided
+    # pontoons on narrower feet that have just these numbers
     draft, volume, area = 0.195122, 0.0780488, 0.75
     length = math.sqrt(12 * 3.416667 * volume / area)
     width = area / 2 / length
@@ -294,7 +303,7 @@ def test_everything_equals_capytaine_on_the_same_mesh(name, height, roll, pitch)
 
 
 def forces_at(model, qpos):
-    """Force and torque of water and weight about the centre of gravity of a free body, by the engine's own callback."""
+    """Force and torque of water and weight about the centre of gravity, by the engine itself."""
     data = mujoco.MjData(model)
     data.qpos[:] = qpos
     mujoco.mj_kinematics(model, data)
@@ -341,9 +350,11 @@ def test_stiffness_is_minus_the_derivative_of_the_exact_forces(seed):
 def test_an_articulated_vehicle_is_measured_at_its_joint_angles():
     # a raft with a weight on an arm, turned up and down
     model = mujoco.MjModel.from_xml_string(
-        """<mujoco><worldbody><body name="raft" pos="3 2 0"><freejoint/><geom type="box" size="1 .5 .2" mass="200"/>
+        """<mujoco><worldbody><body name="raft" pos="3 2 0"><freejoint/>
+        <geom type="box" size="1 .5 .2" mass="200"/>
         <body name="mast" pos="0 0 .2"><joint name="fold" type="hinge" axis="0 1 0"/>
-        <geom type="capsule" fromto="0 0 0 0 0 1" size=".02" mass="10"/></body></body></worldbody></mujoco>"""
+        <geom type="capsule" fromto="0 0 0 0 0 1" size=".02" mass="10"/></body></body>
+        </worldbody></mujoco>"""
     )
     up = hydrostatics(model)
     # folded into the water over the bow

@@ -1,4 +1,4 @@
-"""`inspect`: each fault of a mesh is named, each body weighed, and the sentence is the right one."""
+"""`inspect`: each fault of a mesh is named, each body weighed, the sentence is the right one."""
 
 import json
 
@@ -22,7 +22,7 @@ from buoyancy_mj import (
 from buoyancy_mj.cli import app
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.inspection.json_report import to_json
-from buoyancy_mj.inspection.report import sections, to_markdown
+from buoyancy_mj.inspection.report import list_sections, to_markdown
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
@@ -106,10 +106,12 @@ def test_density_of_the_water_counts():
 
 def test_each_body_is_weighed_and_the_whole():
     model = mujoco.MjModel.from_xml_string(
-        """<mujoco><worldbody><body name="rov"><freejoint/><geom type="box" size=".2 .2 .2" mass="60"/>
-        <body name="arm" pos=".3 0 0"><joint axis="0 1 0"/><geom type="box" size=".05 .05 .05" mass="3"/>
-        <body name="cover"><geom type="box" size=".01 .01 .01" pos=".1 0 0" mass=".5"/></body></body></body>
-        </worldbody></mujoco>"""
+        """<mujoco><worldbody><body name="rov"><freejoint/>
+        <geom type="box" size=".2 .2 .2" mass="60"/>
+        <body name="arm" pos=".3 0 0"><joint axis="0 1 0"/>
+        <geom type="box" size=".05 .05 .05" mass="3"/>
+        <body name="cover"><geom type="box" size=".01 .01 .01" pos=".1 0 0" mass=".5"/></body>
+        </body></body></worldbody></mujoco>"""
     )
     found = only(model)
     shares = {share.body: share for share in found.bodies}
@@ -136,12 +138,13 @@ def test_the_numbers_are_those_of_the_library():
 
 def test_mass_that_nobody_stated_is_told():
     model = mujoco.MjModel.from_xml_string(
-        '<mujoco><worldbody><body><freejoint/><geom type="box" size=".5 .5 .5"/></body></worldbody></mujoco>'
+        '<mujoco><worldbody><body><freejoint/><geom type="box" size=".5 .5 .5"/></body>'
+        "</worldbody></mujoco>"
     )
     (note,) = only(model).notes
     assert (
-        "just what 1000 kg/m^3 makes of its volume: MuJoCo's choice where a model states no mass; give its bodies"
-        in note
+        "just what 1000 kg/m^3 makes of its volume: "
+        "MuJoCo's choice where a model states no mass; give its bodies" in note
     )
 
 
@@ -160,7 +163,7 @@ def doctor(vertices, faces):
     """The part, and all that the report says of meshes."""
     found = inspect_model(mesh_model(vertices, faces))
     (part,) = found.geoms
-    text = "\n".join(note for section in sections(found) for note in section.notes)
+    text = "\n".join(note for section in list_sections(found) for note in section.notes)
     return part, text
 
 
@@ -229,9 +232,11 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
 
 def test_what_does_not_displace_says_why():
     model = mujoco.MjModel.from_xml_string(
-        """<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/><geom name="rock" type="box" size="1 1 1"/>
+        """<mujoco><worldbody><geom name="floor" type="plane" size="1 1 1"/>
+        <geom name="rock" type="box" size="1 1 1"/>
         <body name="boat"><freejoint/><geom name="hull" type="box" size=".5 .5 .5" mass="9"/>
-        <geom name="paint" type="box" size=".6 .5 .5" contype="0" conaffinity="0" mass="0"/></body></worldbody></mujoco>"""
+        <geom name="paint" type="box" size=".6 .5 .5" contype="0" conaffinity="0" mass="0"/></body>
+        </worldbody></mujoco>"""
     )
     reasons = {part.name: part.reason for part in inspect_model(model).geoms}
     assert reasons == {
@@ -247,8 +252,10 @@ def test_what_does_not_displace_says_why():
 
 def test_overlaps_between_bodies_are_told():
     model = mujoco.MjModel.from_xml_string(
-        """<mujoco><worldbody><body name="a"><freejoint/><geom name="one" type="box" size=".5 .5 .5" mass="9"/>
-        <body name="b" pos=".9 0 0"><joint/><geom name="two" type="box" size=".5 .5 .5" mass="9"/></body></body>
+        """<mujoco><worldbody><body name="a"><freejoint/>
+        <geom name="one" type="box" size=".5 .5 .5" mass="9"/>
+        <body name="b" pos=".9 0 0"><joint/>
+        <geom name="two" type="box" size=".5 .5 .5" mass="9"/></body></body>
         </worldbody></mujoco>"""
     )
     found = inspect_model(model)
@@ -306,7 +313,8 @@ def test_centroids_are_in_the_frame_of_the_body():
 
 RAFT = """<mujoco><asset><mesh name="hull" file="hull.obj" inertia="shell"/></asset><worldbody>
 <body name="raft" pos="1 2 0"><inertial pos="0 0 0" mass="20" diaginertia="1 1 1"/>
-<geom name="hull" type="mesh" mesh="hull" pos=".1 0 0" euler="10 0 0"/><site name="ballast_keel" pos="0 0 -.2"/></body>
+<geom name="hull" type="mesh" mesh="hull" pos=".1 0 0" euler="10 0 0"/>
+<site name="ballast_keel" pos="0 0 -.2"/></body>
 </worldbody></mujoco>"""
 
 
@@ -320,7 +328,8 @@ def raft(tmp_path, monkeypatch):
     )
     (tmp_path / "raft.xml").write_text(RAFT)
     monkeypatch.chdir(tmp_path)
-    # by its whole name: MuJoCo remembers meshes by the name of their file, and each test has its own
+    # by its whole name: MuJoCo remembers meshes by the name of their file, and each test has its
+    # own
     return lambda *arguments: CliRunner().invoke(
         app, [arguments[0], str(tmp_path / "raft.xml"), *arguments[1:]]
     )
@@ -398,9 +407,11 @@ def test_names_may_hold_anything_and_a_mesh_of_two_geoms_is_told_once(tmp_path, 
     faces = np.vstack([BALL.faces[1:], BALL.faces[5:6]])
     trimesh.Trimesh(BALL.vertices * 100.0, faces, process=False).export(tmp_path / "ball.obj")
     (tmp_path / "odd.xml").write_text(
-        """<mujoco><compiler angle="degree"/><asset><mesh name="a/b" file="ball.obj" scale="-.01 .01 .012" refpos=".01 0 0"
-        refquat=".9 .1 0 0" inertia="shell"/></asset><worldbody><body name="boat/one [x]" euler="0 0 30"><freejoint/>
-        <inertial pos="0 0 -.05" mass="30" diaginertia="1 1 1"/><geom name="g/1" type="mesh" mesh="a/b" euler="10 20 30"/>
+        """<mujoco><compiler angle="degree"/><asset><mesh name="a/b" file="ball.obj"
+        scale="-.01 .01 .012" refpos=".01 0 0" refquat=".9 .1 0 0" inertia="shell"/></asset>
+        <worldbody><body name="boat/one [x]" euler="0 0 30"><freejoint/>
+        <inertial pos="0 0 -.05" mass="30" diaginertia="1 1 1"/>
+        <geom name="g/1" type="mesh" mesh="a/b" euler="10 20 30"/>
         <geom type="mesh" mesh="a/b" pos=".8 .2 0"/></body></worldbody></mujoco>"""
     )
     flags = [

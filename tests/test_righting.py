@@ -30,7 +30,8 @@ def test_a_box_has_its_righting_arms_past_the_deck_edge_too(trim):
 def test_half_a_turn_in_steps_of_a_degree_is_the_default():
     found = righting_arm(vessels.box())
     assert np.degrees(found.heel) == pytest.approx(np.arange(181))
-    # the largest arm of this box: d/dheel of the exact curve of the triangular section, by the slow twin
+    # the largest arm of this box: d/dheel of the exact curve of the triangular section, by the slow
+    # twin
     heel, arm = found.maximum
     twin = [
         naive.righting_arm(shapes.box((1.0, 0.5, 0.3)), np.zeros(3), 0.6, angle)
@@ -118,10 +119,12 @@ def test_heading_place_and_level_do_not_matter():
 
 
 def test_sites_tell_when_they_go_under():
-    # the deck edge of the box at atan(T / (B / 2)) = 30.96 degrees, a hatch in the middle of the deck with it at 90
+    # the deck edge of the box at atan(T / (B / 2)) = 30.96 degrees, a hatch in the middle of the
+    # deck with it at 90
     sites = (
-        '<site name="deck_edge_starboard" pos="0 -.5 .3"/><site name="deck_edge_port" pos="0 .5 .3"/>'
-        '<site name="downflooding" pos="0 0 .3"/><site name="keel" pos="0 0 -.3"/><site name="other" pos="0 0 9"/>'
+        '<site name="deck_edge_starboard" pos="0 -.5 .3"/>'
+        '<site name="deck_edge_port" pos="0 .5 .3"/><site name="downflooding" pos="0 0 .3"/>'
+        '<site name="keel" pos="0 0 -.3"/><site name="other" pos="0 0 9"/>'
     )
     model = vessels.of_geoms('<geom type="box" size="1 .5 .3" mass="600"/>' + sites)
     found = righting_arm(model)
@@ -178,7 +181,8 @@ def test_an_area_outside_of_the_curve_is_told():
 
 def test_all_trees_of_a_model_have_sites_of_their_own():
     model = mujoco.MjModel.from_xml_string(
-        '<mujoco><worldbody><site name="downflooding_quay" pos="0 0 1"/><body name="tug"><freejoint/><geom type="box" '
-        'size="1 .5 .3" mass="600"/><site name="downflooding_tug" pos="0 0 .5"/></body></worldbody></mujoco>'
+        '<mujoco><worldbody><site name="downflooding_quay" pos="0 0 1"/>'
+        '<body name="tug"><freejoint/><geom type="box" size="1 .5 .3" mass="600"/>'
+        '<site name="downflooding_tug" pos="0 0 .5"/></body></worldbody></mujoco>'
     )
     assert list(righting_arm(model, heel=[0.0, 0.1]).immersed) == ["downflooding_tug"]

@@ -45,14 +45,6 @@ def join_overlapping(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
     return tuple(sorted(joined, key=lambda hull: hull.geom))
 
 
-def find_close_pairs(meshes: Sequence[TriMesh]) -> list[tuple[int, int]]:
-    """Pairs of indices of meshes whose bounding boxes overlap."""
-    bounds = np.array([mesh.bounds for mesh in meshes])
-    apart = (bounds[:, None, 0] >= bounds[None, :, 1]).any(axis=-1)
-    close = np.triu(~(apart | apart.T), 1)
-    return [(int(i), int(j)) for i, j in np.argwhere(close)]
-
-
 def _overlap(one: Hull, two: Hull, solid_of: _SolidOf) -> bool:
     """Whether two hulls share more volume than rounding makes."""
     common = float((solid_of(one) ^ solid_of(two)).volume())

@@ -1,129 +1,135 @@
-"""Pictures of an `Inspection`: righting arms, volume and waterplane against draft, and waterlines."""
+"""Charts of an `Inspection`: righting arm, volume and waterplane over draft, waterlines."""
 
+import math
 from collections.abc import Iterator
 from pathlib import Path
 
 import matplotlib
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from buoyancy_mj.inspection.inspection import Inspection, VesselInspection
+from buoyancy_mj.inspection.inspection import Inspection
+from buoyancy_mj.inspection.vessels import VesselInspection
 from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
+from buoyancy_mj.statics.hydrostatics import Hydrostatics
+from buoyancy_mj.statics.righting import RightingArm
 from buoyancy_mj.statics.vessel import Vessel
 
 
-def draw_charts(found: Inspection, folder: Path) -> list[tuple[str, Path]]:
-    """Draw all that floats, as PNG files in a folder; what each shows, and where it is."""
+def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
+    """Draw charts of all vessels as PNG files in a folder; return each caption and its file."""
     files = []
     with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
-        for floating in found.vessels:
-            name = floating.total.body
+        for vessel in inspection.vessels:
+            name = vessel.total.body
             stem = name.replace("/", "-").replace(" ", "_")
-            for kind, caption, figure in _figures(floating):
+            for kind, caption, figure in _draw_figures(vessel):
                 path = folder / f"{stem}_{kind}.png"
                 figure.savefig(path, dpi=150)
                 files.append((f"{caption} of '{name}'", path))
     return files
 
 
-def _figures(floating: VesselInspection) -> Iterator[tuple[str, str, Figure]]:
-    """What can be drawn."""
-    rotation = floating.at_rest.rotation
-    draft = None if floating.rest is None else floating.rest.hydrostatics.draft
-    yield (
-        "curves",
-        "Volume and waterplane area against draft",
-        _curves(floating.vessel, rotation, draft),
-    )
-    yield "waterlines", "Waterlines", _waterlines(floating.vessel, rotation, draft)
-    if floating.righting is not None:
-        yield "gz", "Righting arm", _gz(floating)
+def _draw_figures(inspection: VesselInspection) -> Iterator[tuple[str, str, Figure]]:
+    """Kind, caption and figure of each chart of a vessel."""
+    vessel, rotation = inspection.vessel, inspection.at_rest.rotation
+    at = None if inspection.rest is None else inspection.rest.hydrostatics
+    draft = None if at is None else at.draft
+
+    caption = "Volume and waterplane area against draft"
+    yield "curves", caption, _draw_curves(vessel, rotation, draft)
+    yield "waterlines", "Waterlines", _draw_waterlines(vessel, rotation, draft)
+    if inspection.righting is not None and at is not None:
+        yield "gz", "Righting arm", _draw_righting(inspection.righting, at)
 
 
-def _curves(vessel: Vessel, rotation: NDArray[np.float64], draft: float | None) -> Figure:
-    curves = compute_hydrostatic_curves(vessel, rotation)
+def _start_figure() -> tuple[Figure, Axes]:
+    """An empty figure with axes."""
     figure = Figure(figsize=(6.0, 4.0), layout="constrained")
-    axes = figure.subplots()
+    return figure, figure.subplots()
+
+
+def _draw_curves(vessel: Vessel, rotation: NDArray[np.float64], draft: float | None) -> Figure:
+    """Volume and waterplane area over draft, with the draft at rest and the volume that floats."""
+    curves = compute_hydrostatic_curves(vessel, rotation)
+    figure, axes = _start_figure()
     axes.plot(1e3 * curves.volume, curves.draft, color="C0")
     axes.set_xlabel("volume [l]", color="C0")
     axes.set_ylabel("draft [m]")
+
     beside = axes.twiny()
     beside.grid(visible=False)
     beside.plot(curves.waterplane_area, curves.draft, color="C1")
     beside.set_xlabel("waterplane area [m^2]", color="C1")
+
     if draft is not None:
         axes.axhline(draft, color="0.3", linestyle="--", linewidth=1.0)
-    wanted = 1e3 * vessel.mass / vessel.water.density
-    axes.axvline(wanted, color="C0", linestyle=":", linewidth=1.0)
+    floats = 1e3 * vessel.mass / vessel.water.density
+    axes.axvline(floats, color="C0", linestyle=":", linewidth=1.0)
     return figure
 
 
-def _waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float | None) -> Figure:
-    heights = vessel.points @ rotation[2]
-    tall = float(np.ptp(heights))
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
-    axes = figure.subplots()
-    levels = [(part * tall, 0.8) for part in np.linspace(0.1, 0.9, 9)]
+def _draw_waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float | None) -> Figure:
+    """Waterlines at nine drafts, and at the draft at rest."""
+    low, high = vessel.heights(rotation)
+    tall = high - low
+    figure, axes = _start_figure()
     colours = matplotlib.colormaps["viridis"]
-    for level, width in levels:
-        for segment in compute_waterline(vessel, rotation, level):
-            axes.plot(*segment.T, color=colours(level / tall), linewidth=width)
+    for part in np.linspace(0.1, 0.9, 9):
+        for segment in compute_waterline(vessel, rotation, part * tall):
+            axes.plot(*segment.T, color=colours(part), linewidth=0.8)
     if draft is not None and 0.0 < draft < tall:
         for segment in compute_waterline(vessel, rotation, draft):
             axes.plot(*segment.T, color="C3", linewidth=1.8)
+
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
-    axes.set_title(
-        "waterlines at a tenth to nine tenths of the height"
-        + ("" if draft is None else "; at rest in red")
-    )
+    title = "waterlines at a tenth to nine tenths of the height"
+    axes.set_title(title if draft is None else f"{title}; at rest in red")
     return figure
 
 
-def _gz(floating: VesselInspection) -> Figure:
-    arm = floating.righting
-    assert arm is not None
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
-    axes = figure.subplots()
-    degrees = np.degrees(arm.heel)
-    axes.plot(degrees, arm.gz, color="C0")
+def _draw_righting(arm: RightingArm, at: Hydrostatics) -> Figure:
+    """The GZ curve, its slope GM at rest, where it vanishes and where sites go under."""
+    figure, axes = _start_figure()
+    axes.plot(np.degrees(arm.heel), arm.gz, color="C0")
     axes.axhline(0.0, color="0.3", linewidth=0.8)
-    assert floating.rest is not None
-    slope = floating.rest.hydrostatics.GMt
+    axes.set_ylim(*_pad(arm.gz))
+
+    # the tangent at rest reaches GM at a heel of 1 rad
+    label = f"GM {at.GMt:.3g} m"
     axes.plot(
-        [0.0, 57.2958],
-        [0.0, slope],
+        [0.0, math.degrees(1.0)],
+        [0.0, at.GMt],
         color="0.5",
         linestyle=":",
         linewidth=1.0,
-        label=f"GM {slope:.3g} m",
+        label=label,
     )
-    axes.set_ylim(*_padded(arm.gz))
-    if np.isfinite(arm.vanishing):
-        axes.axvline(
-            np.degrees(arm.vanishing),
-            color="C3",
-            linestyle="--",
-            linewidth=1.0,
-            label="vanishing stability",
-        )
-    for i, (name, at) in enumerate((n, a) for n, a in arm.immersed.items() if np.isfinite(a)):
-        axes.axvline(
-            np.degrees(at),
-            color=f"C{4 + i % 5}",
-            linestyle="-.",
-            linewidth=1.0,
-            label=f"{name} under",
-        )
+
+    if math.isfinite(arm.vanishing):
+        _mark_heel(axes, arm.vanishing, "vanishing stability", color="C3", linestyle="--")
+    immersed = {name: heel for name, heel in arm.immersed.items() if math.isfinite(heel)}
+    for i, (name, heel) in enumerate(immersed.items()):
+        _mark_heel(axes, heel, f"{name} under", color=f"C{4 + i % 5}", linestyle="-.")
+
     axes.set_xlabel("heel [degrees]")
     axes.set_ylabel("righting arm GZ [m]")
     axes.legend()
     return figure
 
 
-def _padded(values: NDArray[np.float64]) -> tuple[float, float]:
-    low, high = min(0.0, float(values.min())), max(0.0, float(values.max()))
+def _mark_heel(axes: Axes, heel: float, label: str, *, color: str, linestyle: str) -> None:
+    """Mark a heel [rad] by an upright line."""
+    axes.axvline(math.degrees(heel), color=color, linestyle=linestyle, linewidth=1.0, label=label)
+
+
+def _pad(values: NDArray[np.float64]) -> tuple[float, float]:
+    """Limits of an axis that shows values and zero, with a margin."""
+    low = min(0.0, float(values.min()))
+    high = max(0.0, float(values.max()))
     margin = 0.08 * (high - low) + 1e-9
     return low - margin, high + margin

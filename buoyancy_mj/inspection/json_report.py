@@ -6,108 +6,116 @@ from typing import Any
 
 import numpy as np
 
-from buoyancy_mj.inspection.inspection import GeomInspection, Inspection, VesselInspection
+from buoyancy_mj.inspection.geoms import GeomInspection
+from buoyancy_mj.inspection.inspection import Inspection
+from buoyancy_mj.inspection.vessels import BuoyancyBudget, VesselInspection
 from buoyancy_mj.statics.equilibrium import Equilibrium
 
+_DERIVED = (
+    "displacement", "reserve", "draft", "KB", "KG", "BG", "BMt", "BMl", "KMt", "KMl", "GMt", "GMl",
+    "GM",
+)  # fmt: skip
+"""Properties of `Hydrostatics` that are written beside its fields."""
 
-def to_json(found: Inspection) -> dict[str, Any]:
-    """The report as plain values for JSON: SI units, angles in radians, null for what is not a finite number."""
+
+def to_json(inspection: Inspection) -> dict[str, Any]:
+    """Write the report as plain values for JSON.
+
+    Units are SI, angles in radians; what is not a finite number becomes null.
+    """
     return {
-        "title": found.title,
-        "water": {"density": found.water.density, "level": found.water.level},
-        "geoms": [_plain_part(part) for part in found.geoms],
+        "title": inspection.title,
+        "water": {"density": inspection.water.density, "level": inspection.water.level},
+        "geoms": [_convert_geom(geom) for geom in inspection.geoms],
         "overlaps": [
-            {"hulls": [one, two], "volume": _value(volume)} for one, two, volume in found.overlaps
+            {"hulls": [one, other], "volume": _convert(volume)}
+            for one, other, volume in inspection.overlaps
         ],
-        "floating": [_plain_floating(floating) for floating in found.vessels],
-        "problems": list(found.problems),
+        "floating": [_convert_vessel(vessel) for vessel in inspection.vessels],
+        "problems": list(inspection.problems),
     }
 
 
-def _plain_part(part: GeomInspection) -> dict[str, Any]:
-    mesh, found = part.mesh, part.diagnosis
+def _convert_geom(geom: GeomInspection) -> dict[str, Any]:
+    """A geom, with its volume if it displaces, and with the faults of its mesh if it has one."""
     result: dict[str, Any] = {
-        "name": part.name,
-        "body": part.body,
-        "kind": part.kind,
-        "displaces": mesh is not None,
-        "reason": part.reason,
-        "hull": "convex" if part.convex else "mesh",
-        "fill": part.fill,
-        "notes": list(part.notes),
+        "name": geom.name,
+        "body": geom.body,
+        "kind": geom.kind,
+        "displaces": geom.mesh is not None,
+        "reason": geom.reason,
+        "hull": "convex" if geom.convex else "mesh",
+        "fill": geom.fill,
+        "notes": list(geom.notes),
     }
-    if mesh is not None:
+    if geom.mesh is not None:
         result |= {
-            "volume": mesh.volume,
-            "area": mesh.area,
-            "centroid": mesh.centroid.tolist(),
-            "triangles": len(mesh.faces),
+            "volume": geom.mesh.volume,
+            "area": geom.mesh.area,
+            "centroid": geom.mesh.centroid.tolist(),
+            "triangles": len(geom.mesh.faces),
         }
-    if found is not None:
-        fields = {
-            field.name: getattr(found, field.name)
-            for field in dataclasses.fields(found)
-            if field.name not in ("mesh", "holes", "name")
-        }
-        result["mesh"] = fields | {"holes": [dataclasses.asdict(hole) for hole in found.holes]}
+    if geom.diagnosis is not None:
+        holes = [dataclasses.asdict(hole) for hole in geom.diagnosis.holes]
+        faults = _read_fields(geom.diagnosis, leave_out=("mesh", "holes", "name"))
+        result["mesh"] = faults | {"holes": holes}
     return result
 
 
-def _plain_floating(floating: VesselInspection) -> dict[str, Any]:
-    total = floating.total
+def _convert_vessel(inspection: VesselInspection) -> dict[str, Any]:
+    """A vessel, its rest poses and its righting arms."""
+    righting = None if inspection.righting is None else _convert(_read_fields(inspection.righting))
     return {
-        "body": total.body,
-        "sentence": floating.sentence,
-        "mass": total.mass,
-        "displaced": total.displacement,
-        "reserve": total.reserve,
-        "lift": total.lift,
-        "centre_of_gravity": _value(floating.centre_of_gravity),
-        "centre_of_buoyancy": _value(floating.centre_of_buoyancy),
+        **_convert_budget(inspection.total),
+        "lift": inspection.total.lift,
+        "sentence": inspection.sentence,
+        "centre_of_gravity": _convert(inspection.centre_of_gravity),
+        "centre_of_buoyancy": _convert(inspection.centre_of_buoyancy),
         "bodies": [
-            {
-                "body": one.body,
-                "mass": one.mass,
-                "displaced": one.displacement,
-                "gravity": one.gravity,
-                "reserve": one.reserve,
-            }
-            for one in floating.bodies
+            _convert_budget(budget) | {"gravity": budget.gravity} for budget in inspection.bodies
         ],
-        "rest": None if floating.rest is None else _plain_rest(floating.rest),
-        "rests": [_plain_rest(one) for one in floating.rests],
-        "righting": None
-        if floating.righting is None
-        else {
-            name.name: _value(getattr(floating.righting, name.name))
-            for name in dataclasses.fields(floating.righting)
-        },
-        "notes": list(floating.notes),
+        "rest": None if inspection.rest is None else _convert_rest(inspection.rest),
+        "rests": [_convert_rest(rest) for rest in inspection.rests],
+        "righting": righting,
+        "notes": list(inspection.notes),
     }
 
 
-def _plain_rest(found: Equilibrium) -> dict[str, Any]:
-    at = found.hydrostatics
-    names = [field.name for field in dataclasses.fields(at)]
-    derived = (
-        "displacement", "reserve", "draft", "KB", "KG", "BG", "BMt", "BMl", "KMt", "KMl", "GMt", "GMl", "GM",
-    )  # fmt: skip
+def _convert_budget(budget: BuoyancyBudget) -> dict[str, Any]:
+    """What a body weighs and displaces."""
     return {
-        "qpos": _value(found.qpos),
-        "stability": found.stability,
-        "eigenvalues": _value(found.eigenvalues),
-        "energy": _value(found.energy),
-        "hydrostatics": {name: _value(getattr(at, name)) for name in (*names, *derived)}
-        | {"natural_periods": _value(at.natural_periods())},
+        "body": budget.body,
+        "mass": budget.mass,
+        "displaced": budget.displacement,
+        "reserve": budget.reserve,
     }
 
 
-def _value(value: Any) -> Any:
-    """Numbers as JSON knows them."""
+def _convert_rest(rest: Equilibrium) -> dict[str, Any]:
+    """A rest pose and its hydrostatics."""
+    at = rest.hydrostatics
+    hydrostatics = _read_fields(at) | {name: getattr(at, name) for name in _DERIVED}
+    return {
+        "qpos": _convert(rest.qpos),
+        "stability": rest.stability,
+        "eigenvalues": _convert(rest.eigenvalues),
+        "energy": _convert(rest.energy),
+        "hydrostatics": _convert(hydrostatics | {"natural_periods": at.natural_periods()}),
+    }
+
+
+def _read_fields(record: Any, leave_out: tuple[str, ...] = ()) -> dict[str, Any]:
+    """Values of the fields of a dataclass, by name."""
+    names = [field.name for field in dataclasses.fields(record)]
+    return {name: getattr(record, name) for name in names if name not in leave_out}
+
+
+def _convert(value: Any) -> Any:
+    """A value as JSON knows it."""
     if isinstance(value, dict):
-        return {name: _value(one) for name, one in value.items()}
+        return {name: _convert(one) for name, one in value.items()}
     if isinstance(value, np.ndarray):
-        return [_value(one) for one in value.tolist()]
+        return _convert(value.tolist())
     if isinstance(value, list):
-        return [_value(one) for one in value]
+        return [_convert(one) for one in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

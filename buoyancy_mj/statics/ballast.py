@@ -1,66 +1,37 @@
-"""`ballast`: how much mass or foam, and where, brings a vessel to a wanted draft and attitude."""
+"""`ballast`: how much mass or foam, and where, brings a vessel to a draft and an attitude."""
 
 import dataclasses
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import mujoco
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
+from numpy.typing import ArrayLike
 
+from buoyancy_mj.cli.common import GEOMS
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
-from buoyancy_mj.hulls.names import body_name
-from buoyancy_mj.hulls.overlaps import find_close_pairs
-from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, Selection
-from buoyancy_mj.meshes import shapes
-from buoyancy_mj.meshes.surface import to_manifold
+from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.meshes.overlaps import find_close_pairs, measure_overlaps
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.ballast_sites import (
-    LEAST,
-    BallastSite,
-    find_ballast_sites,
-    find_least_masses,
-)
+from buoyancy_mj.statics.ballast_items import BallastItem, add_items, merge_sites
+from buoyancy_mj.statics.ballast_program import find_least_masses
+from buoyancy_mj.statics.ballast_sites import find_ballast_sites
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
-from buoyancy_mj.statics.vessel import Vessel, VesselHull
+from buoyancy_mj.statics.vessel import Vessel
 
-LEAD, FOAM = 11_340.0, 200.0
-"""Densities [kg/m^3] of what is added, unless said otherwise: lead, and closed-cell PVC foam as used under water."""
+LEAD = 11_340.0
+"""Density of ballast [kg/m^3] by default: lead."""
+FOAM = 200.0
+"""Density of foam [kg/m^3] by default: closed-cell PVC foam, as used under water."""
+_OVERLAP = 1e-3
+"""Part of the smaller of two hulls from which on their overlap is worth a warning."""
 _NOBODY = 1 << 30
-"""A contype that meets nothing, for geoms that MuJoCo must not discard as visual, as it does by default in URDF."""
+"""A contype that meets nothing.
 
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class BallastItem:
-    """One thing added to a vessel."""
-
-    kind: str
-    """'ballast' or 'foam'."""
-    name: str
-    """Of its site, or 'box'."""
-    position: NDArray[np.float64]
-    """Its middle in the frame of the root body (3,) [m], its joints as they were."""
-    mass: float
-    """[kg]."""
-    density: float
-    """[kg/m^3]."""
-    displaces: bool
-    """Whether it lies outside of the hulls, where it displaces water itself."""
-
-    @property
-    def label(self) -> str:
-        """What its body is called."""
-        return self.name if self.name.startswith(self.kind) else f"{self.kind}_{self.name}"
-
-    @property
-    def radius(self) -> float:
-        """Of the ball that it is taken for [m]."""
-        return float((self.mass / self.density * 0.75 / math.pi) ** (1.0 / 3.0))
+MuJoCo discards geoms without one as visual, by default in URDF."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -70,49 +41,33 @@ class Ballast:
     items: tuple[BallastItem, ...]
     """Each thing added; none where the vessel is right as it is."""
     hydrostatics: Hydrostatics
-    """Of the vessel with all that, at the wanted draft and attitude."""
+    """Hydrostatics of the vessel with all items, at its target draft and attitude."""
     root: str
     """Name of the root body."""
 
     @property
     def mass(self) -> float:
-        """All that is added [kg]."""
-        return sum(one.mass for one in self.items)
+        """Mass of all items [kg]."""
+        return sum(item.mass for item in self.items)
 
     def add_to(self, spec: mujoco.MjSpec) -> None:
-        """Add all that to a model that is not yet compiled: the same vehicle's, as bodies of the root body.
+        """Add all items to the specification of the same vehicle, as bodies of its root body.
 
         Raises:
-            ModelError: it has no such body, or has been ballasted already.
+            ModelError: the specification has no such body, or has the items already.
         """
         bodies = {body.name: body for body in spec.bodies}
         if self.root not in bodies:
             raise ModelError(
                 f"there is no body '{self.root}' to carry the ballast; {choices(self.root, bodies)}"
             )
-        for one in self.items:
-            name = one.label
-            if name in bodies:
+        for item in self.items:
+            if item.label in bodies:
                 raise ModelError(
-                    f"body '{name}' is there already; ballast the vehicle as it was, without '{name}'"
+                    f"body '{item.label}' is there already; "
+                    f"ballast the vehicle as it was, without '{item.label}'"
                 )
-            body = bodies[self.root].add_body(
-                name=name, pos=one.position.tolist(), mass=one.mass, explicitinertial=True
-            )
-            body.ipos, body.inertia = [0.0] * 3, [0.4 * one.mass * one.radius**2] * 3
-            if one.displaces:
-                ball = mujoco.mjtGeom.mjGEOM_SPHERE
-                body.add_geom(
-                    name=name,
-                    type=ball,
-                    size=[one.radius, 0.0, 0.0],
-                    contype=_NOBODY,
-                    conaffinity=0,
-                    mass=0.0,
-                )
-                for text in spec.texts:
-                    if text.name.rsplit("/", 1)[-1] == CUSTOM_TEXTS["geoms"]:
-                        text.data = f"{text.data} {name}"
+            _add_item(spec, bodies[self.root], item)
 
 
 def ballast(
@@ -132,164 +87,157 @@ def ballast(
     body: str | None = None,
     selection: Selection = Selection(),
 ) -> Ballast:
-    """The least ballast and foam that bring a vessel to rest as wanted, its joints held.
+    """Find the least ballast and foam that bring a vessel to rest at a draft and an attitude.
 
-    Weight and buoyancy must be equal and their moments cancel at the wanted pose, and G must lie as
-    far under B as wanted; all that is linear in the masses at given places, so a linear program
-    (HiGHS, by scipy) finds the least. Inside a box the mass may be anywhere: its corners are the
-    places, and one mass at their common centre does the same.
+    Weight and buoyancy must be equal in that pose and their moments cancel, and G must lie under B
+    by `bg`. All that is linear in the masses at the sites, so a linear program (HiGHS, by scipy)
+    finds the least. Inside a box the mass may be anywhere: the corners of the box are its sites,
+    and one mass at their common centre does the same.
 
-    What is added inside a hull displaces nothing more; outside it displaces its own volume, as a ball,
-    where that is under water.
+    What is added inside a hull displaces nothing more. Outside it displaces its own volume, as a
+    ball, where that is under water.
 
     Args:
-        model: any MuJoCo model with bodies that displace water.
-        water: fresh and still at z = 0 if None; waves are left aside.
-        draft: wanted depth of the lowest point of its hulls [m], floating; or
-        reserve: wanted lift left when it is submerged [kg], 0 for neutral.
-        heel: wanted roll [rad].
-        trim: wanted pitch, bow down [rad].
-        bg: wanted height of B over G [m]; None for whatever comes.
-        masses: where ballast may go: globs of sites, or a box (2, 3) in the frame of the root body [m].
-        foam: where foam may go, likewise.
+        model: any MuJoCo model with bodies that displace water; its joints are held.
+        water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
+        draft: depth of the lowest point of the hulls [m], for a vessel that floats; or
+        reserve: lift left when it is submerged [kg], 0 for neutral.
+        heel: roll [rad].
+        trim: pitch, bow down [rad].
+        bg: height of B over G [m]; None for any.
+        masses: where ballast may go: globs of sites, or a box, its lowest and highest corner (2, 3)
+            [m] in the frame of the root body.
+        foam: where foam may go: globs of sites, or a box.
         mass_density: of the ballast [kg/m^3].
         foam_density: of the foam [kg/m^3].
-        start: coordinates of the model (nq,), for its joints; the model's own if None.
-        body: name of the root body, where several float; None for the first that has hulls.
+        start: coordinates of the model (nq,), for its joints; `model.qpos0` if None.
+        body: name of the root body, where several float; the first that has hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
-        BallastError: these places cannot do it; the message says what they could.
-        ModelError: neither draft nor reserve, or both; values that make no sense; see also `statics.build_vessel`.
-        MeshError: a mesh that bounds no volume.
+        BallastError: the sites cannot do it; the message says what they could.
+        ModelError: neither draft nor reserve is given, or both are; a number makes no sense; or see
+            `statics.building.build_vessel`.
+        MeshError: a mesh bounds no volume.
+
+    Example:
+        `ballast(model, reserve=0.0, masses=[[-0.4, -0.1, -0.1], [0.4, 0.1, 0.0]]).add_to(spec)`
     """
+    _check_numbers(draft, reserve, (heel, trim, bg), (mass_density, foam_density))
+    vessel = build_vessel(model, water, start, body=body, selection=selection)
+    pose = _pose_at_target(vessel, draft, heel, trim)
+
+    # the sites, less those where foam lifts less than it weighs
+    sites = find_ballast_sites(pose, "foam", foam, foam_density)
+    sites = [site for site in sites if site.lift > 1.0]
+    sites = [*find_ballast_sites(pose, "ballast", masses, mass_density), *sites]
+
+    # the vessel with all that is added, its hulls where they were
+    items = merge_sites(vessel, sites, find_least_masses(pose, sites, reserve or 0.0, bg))
+    after = add_items(vessel, items)
+    shift = after.centre_of_gravity - vessel.centre_of_gravity
+    at = compute_hydrostatics(
+        pose_vessel(after, pose.position + pose.rotation @ shift, pose.rotation)
+    )
+
+    # what the linear program could not see
+    for doubt in _list_doubts(after, at, reserve or 0.0, added_from=len(vessel.hulls)):
+        warnings.warn(doubt, BuoyancyWarning, stacklevel=2)
+    return Ballast(items, at, vessel.name)
+
+
+def _check_numbers(
+    draft: float | None,
+    reserve: float | None,
+    others: Sequence[float | None],
+    densities: tuple[float, float],
+) -> None:
+    """Refuse numbers that make no sense."""
     if (draft is None) == (reserve is None):
         raise ModelError(
             "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral; not both"
         )
-    numbers = [value for value in (draft, reserve, heel, trim, bg) if value is not None]
-    if not all(math.isfinite(value) for value in numbers) or not (
-        foam_density > 0.0 and mass_density > 0.0
-    ):
+    numbers = [value for value in (draft, reserve, *others) if value is not None]
+    if not all(map(math.isfinite, numbers)) or not all(density > 0.0 for density in densities):
         raise ModelError(
-            f"draft or reserve, heel, trim and bg are {numbers}, densities {mass_density:g} and {foam_density:g}; all must "
-            "be finite, densities positive"
+            f"draft or reserve, heel, trim and bg are {numbers}, "
+            f"densities {densities[0]:g} and {densities[1]:g}; "
+            "all must be finite, densities positive"
         )
-    vessel = build_vessel(model, water, start, body=body, selection=selection)
-    pose = _wanted(vessel, draft, heel, trim)
-    # foam that lifts less than it weighs there is none
-    lifting = [
-        place for place in find_ballast_sites(pose, "foam", foam, foam_density) if place.lift > 1.0
-    ]
-    places = [*find_ballast_sites(pose, "ballast", masses, mass_density), *lifting]
-    placed = _merged(vessel, places, find_least_masses(pose, places, reserve or 0.0, bg))
-    after = _ballasted(vessel, placed)
-    moved = pose.position + pose.rotation @ (after.centre_of_gravity - vessel.centre_of_gravity)
-    result = compute_hydrostatics(pose_vessel(after, moved, pose.rotation))
-    _check(after, result, reserve or 0.0, len(vessel.meshes))
-    return Ballast(placed, result, body_name(model, vessel.root))
 
 
-def _wanted(vessel: Vessel, draft: float | None, heel: float, trim: float) -> FloatingPose:
-    """The vessel as it is, where it is wanted."""
+def _pose_at_target(vessel: Vessel, draft: float | None, heel: float, trim: float) -> FloatingPose:
+    """The vessel as it is, at its target draft [m] or deep under water, at its target attitude."""
     heading = Attitude.from_matrix(vessel.rotation).heading
-    turn = Rotation.from_euler("ZYX", [heading, trim, heel]).as_matrix()
-    heights = vessel.points @ turn[2]
-    low, high = float(heights.min()), float(heights.max())
+    rotation = Attitude(heading, trim, heel).as_matrix()
+    low, high = vessel.heights(rotation)
     if draft is None:
         height = vessel.water.level - high - vessel.radius
     elif 0.0 < draft <= high - low:
         height = vessel.water.level - draft - low
     else:
         raise BallastError(
-            f"a draft of {draft:g} m is wanted of hulls {high - low:.4g} m tall at this attitude; it must be above 0 and at "
-            "most that, or ask for a reserve of 0 to be neutral under water"
+            f"a draft of {draft:g} m is wanted of hulls {high - low:.4g} m tall at this attitude; "
+            "it must be above 0 and at most that, "
+            "or ask for a reserve of 0 to be neutral under water"
         )
-    return pose_vessel(vessel, [*vessel.position[:2], height], turn)
+    return pose_vessel(vessel, [*vessel.position[:2], height], rotation)
 
 
-def _merged(
-    vessel: Vessel, places: Sequence[BallastSite], masses: NDArray[np.float64]
-) -> tuple[BallastItem, ...]:
-    """What goes where; the corners of a box as one."""
-    result = []
-    for kind, name in dict.fromkeys((place.kind, place.name) for place in places):
-        own = [
-            (place, mass)
-            for place, mass in zip(places, masses, strict=True)
-            if (place.kind, place.name) == (kind, name)
-        ]
-        mass = sum(share for _, share in own)
-        if mass > LEAST * vessel.mass:
-            middle = sum((share / mass * place.point for place, share in own), np.zeros(3))
-            first = own[0][0]
-            at = middle + vessel.centre_of_gravity
-            result.append(BallastItem(kind, name, at, float(mass), first.density, first.displaces))
-    return tuple(result)
+def _list_doubts(
+    vessel: Vessel, at: Hydrostatics, reserve: float, added_from: int
+) -> Iterator[str]:
+    """Sentences on a ballasted vessel that floats otherwise than the linear program found.
+
+    Args:
+        vessel: the vessel with its ballast.
+        at: its hydrostatics.
+        reserve: its target reserve [kg].
+        added_from: index of the first of its hulls that was added.
+    """
+    missing = at.displacement - reserve - at.mass
+    if abs(missing) > 1e-4 * at.mass:
+        yield (
+            f"what was added lies partly in the surface, and {abs(missing):.3g} kg are "
+            f"{'too much' if missing < 0 else 'missing'}; "
+            "give it a place well under water, or well over it"
+        )
+    if not at.GM > 0.0:
+        yield (
+            f"as wanted it is not stable: GM is {at.GM:.4g} m, and it would turn away; "
+            "ask for a greater bg, or give masses a lower place"
+        )
+    pairs = [
+        (i, j)
+        for i, j in find_close_pairs(vessel.meshes)
+        if max(i, j) >= added_from and vessel.fills[i] == vessel.fills[j] == 1.0
+    ]
+    for i, j, volume in measure_overlaps(vessel.meshes, pairs):
+        if volume > _OVERLAP * min(vessel.meshes[i].volume, vessel.meshes[j].volume):
+            yield (
+                f"'{vessel.hulls[i].name}' and '{vessel.hulls[j].name}' overlap by "
+                f"{volume:.3g} m^3, which will displace once and was counted twice; "
+                "place them apart"
+            )
 
 
-def _ballasted(vessel: Vessel, placed: Sequence[BallastItem]) -> Vessel:
-    """The vessel with all that."""
-    mass = vessel.mass + sum(one.mass for one in placed)
-    points = [one.position - vessel.centre_of_gravity for one in placed]
-    shift = (
-        sum((one.mass * point for one, point in zip(placed, points, strict=True)), np.zeros(3))
-        / mass
+def _add_item(spec: mujoco.MjSpec, root: mujoco.MjsBody, item: BallastItem) -> None:
+    """Add an item to the root body of a specification, and to its choice of geoms."""
+    body = root.add_body(
+        name=item.label, pos=item.position.tolist(), mass=item.mass, explicitinertial=True
     )
-    inertia = vessel.inertia + vessel.mass * _about(shift)
-    for one, point in zip(placed, points, strict=True):
-        inertia = (
-            inertia + one.mass * _about(point - shift) + 0.4 * one.mass * one.radius**2 * np.eye(3)
-        )
-    balls = [(one, point) for one, point in zip(placed, points, strict=True) if one.displaces]
-    return dataclasses.replace(
-        vessel,
-        mass=mass,
-        inertia=inertia,
-        centre_of_gravity=vessel.centre_of_gravity + shift,
-        position=vessel.position + vessel.rotation @ shift,
-        hulls=(
-            *(dataclasses.replace(hull, position=hull.position - shift) for hull in vessel.hulls),
-            *(
-                VesselHull(one.label, shapes.sphere(one.radius), point - shift, np.eye(3), 1.0)
-                for one, point in balls
-            ),
-        ),
-        sites={name: at - shift for name, at in vessel.sites.items()},
+    body.ipos = [0.0] * 3
+    body.inertia = [item.inertia] * 3
+    if not item.displaces:
+        return
+    body.add_geom(
+        name=item.label,
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        size=[item.radius, 0.0, 0.0],
+        contype=_NOBODY,
+        conaffinity=0,
+        mass=0.0,
     )
-
-
-def _about(arm: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Inertia per mass of a point at `arm` (Steiner)."""
-    return arm @ arm * np.eye(3) - np.outer(arm, arm)
-
-
-def _check(vessel: Vessel, found: Hydrostatics, reserve: float, before: int) -> None:
-    """Tell what the linear program could not see; hulls from number `before` on were added."""
-    off = found.displacement - reserve - found.mass
-    if abs(off) > 1e-4 * found.mass:
-        warnings.warn(
-            f"what was added lies partly in the surface, and {abs(off):.3g} kg are {'too much' if off < 0 else 'missing'}; "
-            "give it a place well under water, or well over it",
-            BuoyancyWarning,
-            stacklevel=3,
-        )
-    if not found.GM > 0.0:
-        warnings.warn(
-            f"as wanted it is not stable: GM is {found.GM:.4g} m, and it would turn away; ask for a greater bg, or give "
-            "masses a lower place",
-            BuoyancyWarning,
-            stacklevel=3,
-        )
-    for i, j in find_close_pairs(vessel.meshes):
-        pair = vessel.hulls[i].name, vessel.hulls[j].name
-        if max(i, j) >= before and vessel.fills[i] == vessel.fills[j] == 1.0:
-            solids = to_manifold(*vessel.meshes[i].compact), to_manifold(*vessel.meshes[j].compact)
-            common = (solids[0] ^ solids[1]).volume() if solids[0] and solids[1] else 0.0
-            if common > 1e-3 * min(vessel.meshes[i].volume, vessel.meshes[j].volume):
-                warnings.warn(
-                    f"'{pair[0]}' and '{pair[1]}' overlap by {common:.3g} m^3, which will displace once and was counted "
-                    "twice; place them apart",
-                    BuoyancyWarning,
-                    stacklevel=3,
-                )
+    for text in spec.texts:
+        if text.name.rsplit("/", 1)[-1] == GEOMS:
+            text.data = f"{text.data} {item.label}"

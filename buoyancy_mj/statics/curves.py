@@ -1,4 +1,4 @@
-"""The lines of a vessel: how it fills out with its draft, and its waterlines."""
+"""Hydrostatic curves of a vessel over its draft, and its waterlines."""
 
 import dataclasses
 
@@ -12,10 +12,10 @@ from buoyancy_mj.statics.vessel import Vessel
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class HydrostaticCurves:
-    """How a vessel fills out with its draft, at one attitude."""
+    """Volume and waterplane of a vessel over its draft, at one attitude."""
 
     draft: NDArray[np.float64]
-    """Depths of the lowest point (n,) [m]."""
+    """Depths of the lowest point of the hulls (n,) [m], ascending."""
     volume: NDArray[np.float64]
     """Submerged volumes (n,) [m^3]."""
     waterplane_area: NDArray[np.float64]
@@ -25,37 +25,47 @@ class HydrostaticCurves:
 def compute_hydrostatic_curves(
     vessel: Vessel, rotation: NDArray[np.float64], count: int = 101
 ) -> HydrostaticCurves:
-    """Volume and waterplane area from touching the water to being under it.
+    """Compute volume and waterplane area from touching the water to being under it.
 
     Args:
-        vessel: any.
+        vessel: the vessel.
         rotation: its attitude, world_from_vessel (3, 3).
         count: number of drafts.
     """
-    heights = vessel.points @ rotation[2]
-    low, high = float(heights.min()), float(heights.max())
+    low, high = vessel.heights(rotation)
+
     # just off the ends, where flat faces lie in the surface
     drafts = (high - low) * np.linspace(1e-6, 1.0 - 1e-6, count)
-    poses = [
-        pose_vessel(vessel, [0.0, 0.0, vessel.water.level - draft - low], rotation)
-        for draft in drafts
-    ]
+    heights = vessel.water.level - drafts - low
+    poses = [pose_vessel(vessel, [0.0, 0.0, height], rotation) for height in heights]
     return HydrostaticCurves(
-        drafts, np.array([p.volume for p in poses]), np.array([p.waterplane.area for p in poses])
+        draft=drafts,
+        volume=np.array([pose.volume for pose in poses]),
+        waterplane_area=np.array([pose.waterplane.area for pose in poses]),
     )
 
 
 def compute_waterline(
     vessel: Vessel, rotation: NDArray[np.float64], draft: float
 ) -> NDArray[np.float64]:
-    """Segments (n, 2, 2) [m] of the waterline at a draft, seen from above, from the centre of gravity."""
-    height = float((vessel.points @ rotation[2]).min()) + draft
+    """Cut the hulls of a vessel at a draft.
+
+    Args:
+        vessel: the vessel.
+        rotation: its attitude, world_from_vessel (3, 3).
+        draft: depth of the lowest point of its hulls [m].
+
+    Returns:
+        Segments of the waterline (n, 2, 2) [m], seen from above, from the centre of gravity.
+    """
+    low, _ = vessel.heights(rotation)
     cuts = [
         trimesh.intersections.mesh_plane(
             trimesh.Trimesh(mesh.vertices @ rotation.T, mesh.faces, process=False),
-            [0.0, 0.0, 1.0],
-            [0.0, 0.0, height],
+            plane_normal=[0.0, 0.0, 1.0],
+            plane_origin=[0.0, 0.0, low + draft],
         )
         for mesh in vessel.meshes
     ]
-    return np.concatenate([np.asarray(cut, float).reshape(-1, 2, 3) for cut in cuts])[:, :, :2]
+    segments = np.concatenate([np.asarray(cut, float).reshape(-1, 2, 3) for cut in cuts])
+    return segments[:, :, :2]

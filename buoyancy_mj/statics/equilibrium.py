@@ -1,8 +1,6 @@
-"""`equilibrium`: where a vessel comes to rest on still water, and whether it stays there."""
+"""`equilibrium` and `equilibria`: where a vessel comes to rest, and whether it stays there."""
 
 import dataclasses
-import math
-from collections.abc import Iterator
 
 import mujoco
 import numpy as np
@@ -13,21 +11,18 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.balance import (
-    STRIDE,
-    find_balance,
-    tilt,
-    tilt_stiffness,
-)
+from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.distinct_poses import is_same_pose
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
 from buoyancy_mj.statics.vessel import Vessel
 
 INDIFFERENT = 1e-3
-"""Part of the largest eigenvalue below which nothing restores worth the name: a period thirty times the shortest."""
-LEVEL, SOFT = 1e-6, 1e-2
-"""Energy over weight times radius by which a valley may rise, and how soft it is beside what crosses it."""
+"""Part of the largest eigenvalue below which an eigenvalue counts as zero.
+
+The period of such a motion is thirty times the shortest."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -35,26 +30,32 @@ class Equilibrium:
     """A pose in which weight and buoyancy balance."""
 
     qpos: NDArray[np.float64]
-    """Coordinates of the model (nq,), its joints as they were; heading and place of the root body are kept."""
+    """Coordinates of the model (nq,), with the heading, the place and the joints of the start."""
     hydrostatics: Hydrostatics
-    """Draft, heel, trim and all else there."""
+    """Draft, heel, trim and all else in this pose."""
     eigenvalues: NDArray[np.float64]
-    """Squared frequencies of heave, roll and pitch coupled (3,) [1/s^2], ascending; what is negative tips over."""
+    """Squared frequencies of coupled heave, roll and pitch (3,) [1/s^2], ascending.
+
+    The vessel tips over where one is negative."""
     energy: float
     """Potential energy of weight and buoyancy [J]; of several poses the lowest is the safest."""
     iterations: int
-    """Steps in attitude that it took."""
+    """Number of steps in attitude that the search took."""
 
     @property
     def stability(self) -> str:
-        """'stable', 'indifferent' where a motion meets no resistance (any depth, any heading of a log), or 'unstable'."""
+        """'stable', 'indifferent' or 'unstable'.
+
+        Indifferent is a vessel with a motion that meets no resistance: one that hovers at any
+        depth, or a log at any angle of roll.
+        """
         least = float(self.eigenvalues[0])
         small = INDIFFERENT * float(np.abs(self.eigenvalues).max())
         return "stable" if least > small else "unstable" if least < -small else "indifferent"
 
     @property
     def stable(self) -> bool:
-        """Whether it comes back from every small push."""
+        """Whether the vessel comes back from every small push."""
         return self.stability == "stable"
 
 
@@ -67,26 +68,29 @@ def equilibrium(
     body: str | None = None,
     selection: Selection = Selection(),
 ) -> Equilibrium:
-    """The pose in which a vessel comes to rest, its joints held.
+    """Find the pose in which a vessel comes to rest, its joints held.
 
-    It is found by Newton steps that always lead down, see `statics.find_balance`.
+    The search takes Newton steps that always lead down, see `statics.balance.find_balance`.
 
     Args:
         model: any MuJoCo model with a body that floats.
-        water: fresh and still at z = 0 if None; waves are left aside.
-        start: coordinates of the model (nq,), or of its free joint alone (7,); the model's own if None.
+        water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
+        start: coordinates of the model (nq,), or of its free joint alone (7,); `model.qpos0` if
+            None.
         stable: False for the nearest balance, be it a summit or a saddle.
-        body: name of the root body, where several float; None for the first that has hulls.
+        body: name of the root body, where several float; the first that has hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
-        EquilibriumError: it sinks; or no balance was found near the start.
-        ModelError: see `statics.build_vessel`; or nothing of it is free to float.
-        MeshError: a mesh that bounds no volume.
+        EquilibriumError: the vessel sinks, or there is no balance near the start.
+        ModelError: nothing is free to float; or see `statics.building.build_vessel`.
+        MeshError: a mesh bounds no volume.
+
+    Example:
+        `equilibrium(model, Water(density=1025.0)).hydrostatics.draft`
     """
-    return find_equilibrium(
-        build_vessel(model, water, start, body=body, selection=selection), stable=stable
-    )
+    vessel = build_vessel(model, water, start, body=body, selection=selection)
+    return find_equilibrium(vessel, stable=stable)
 
 
 def equilibria(
@@ -97,108 +101,88 @@ def equilibria(
     body: str | None = None,
     selection: Selection = Selection(),
 ) -> tuple[Equilibrium, ...]:
-    """Every stable pose of a vessel, its joints held; those of lowest energy first.
+    """Find every pose in which a vessel stays at rest, its joints held; lowest energy first.
 
     The search starts from 42 attitudes all round. Poses that differ by heading alone, or by rolling
     without resistance, count once.
 
     Args:
         model: any MuJoCo model with a body that floats.
-        water: fresh and still at z = 0 if None; waves are left aside.
-        start: coordinates of the model (nq,), or of its free joint alone (7,), which hold the joints, place
-            and heading; the model's own if None.
-        body: name of the root body, where several float; None for the first that has hulls.
+        water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
+        start: coordinates of the model (nq,), or of its free joint alone (7,), which hold the
+            joints, place and heading; `model.qpos0` if None.
+        body: name of the root body, where several float; the first that has hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
-        EquilibriumError: it sinks.
-        ModelError: see `statics.build_vessel`; or nothing of it is free to float.
-        MeshError: a mesh that bounds no volume.
+        EquilibriumError: the vessel sinks.
+        ModelError: nothing is free to float; or see `statics.building.build_vessel`.
+        MeshError: a mesh bounds no volume.
     """
     return find_equilibria(build_vessel(model, water, start, body=body, selection=selection))
 
 
 def find_equilibrium(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
-    """The pose in which a vessel comes to rest from where it is, see `equilibrium`."""
-    afloat, steps = find_balance(vessel, vessel.rotation, stable=stable)
-    return _equilibrium(afloat, steps)
+    """Find the pose in which a vessel comes to rest from where it is, see `equilibrium`."""
+    pose, iterations = find_balance(vessel, vessel.rotation, stable=stable)
+    return _describe(pose, iterations)
 
 
 def find_equilibria(vessel: Vessel) -> tuple[Equilibrium, ...]:
-    """All poses in which a vessel stays at rest, see `equilibrium`; those of lowest energy first."""
-    found: list[Equilibrium] = []
-    kept: list[FloatingPose] = []
+    """Find all poses in which a vessel stays at rest, lowest energy first; see `equilibria`."""
+    poses: list[FloatingPose] = []
+    result: list[Equilibrium] = []
     for down in trimesh.creation.icosphere(subdivisions=1).vertices:
-        turn, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [down])
-        afloat, steps = find_balance(vessel, turn.as_matrix())
-        new = _equilibrium(afloat, steps)
-        if new.stability != "unstable" and not any(_same(one, afloat) for one in kept):
-            kept.append(afloat)
-            found.append(new)
-    return tuple(sorted(found, key=lambda one: one.energy))
+        start, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [down])
+        pose, iterations = find_balance(vessel, start.as_matrix())
+        rest = _describe(pose, iterations)
+        if rest.stability != "unstable" and not any(is_same_pose(one, pose) for one in poses):
+            poses.append(pose)
+            result.append(rest)
+    return tuple(sorted(result, key=lambda rest: rest.energy))
 
 
-def _equilibrium(afloat: FloatingPose, steps: int) -> Equilibrium:
-    """The result, its root body's place and heading those of the vessel."""
-    vessel = afloat.vessel
-    heading = (
-        Attitude.from_matrix(vessel.rotation).heading
-        - Attitude.from_matrix(afloat.rotation).heading
+def move_to_rest(vessel: Vessel, rest: Equilibrium) -> Vessel:
+    """A copy of a vessel, moved to where it comes to rest."""
+    start = int(vessel.model.jnt_qposadr[vessel.model.body_jntadr[vessel.root]])
+    rotation = np.empty(9)
+    mujoco.mju_quat2Mat(rotation, rest.qpos[start + 3 : start + 7])
+    return dataclasses.replace(
+        vessel,
+        qpos=rest.qpos,
+        position=rest.hydrostatics.centre_of_gravity,
+        rotation=rotation.reshape(3, 3),
     )
-    turned = Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix() @ afloat.rotation
+
+
+def _describe(pose: FloatingPose, iterations: int) -> Equilibrium:
+    """Describe a pose in balance, brought to the place and heading of the vessel's root body."""
+    vessel = pose.vessel
+
+    # turn it back to the heading of the vessel
+    before, after = (Attitude.from_matrix(at.rotation).heading for at in (vessel, pose))
+    rotation = Rotation.from_rotvec([0.0, 0.0, before - after]).as_matrix() @ pose.rotation
+
+    # the root body stays where it was, but for its height
     root = vessel.position - vessel.rotation @ vessel.centre_of_gravity
-    place = root + turned @ vessel.centre_of_gravity
-    place[2] = afloat.position[2]
-    final = pose_vessel(vessel, place, turned)
-    found = compute_hydrostatics(final)
-    inverse = np.linalg.inv(np.linalg.cholesky(found.mass_matrix[2:5, 2:5]))
-    restoring = found.stiffness[2:5, 2:5]
+    position = root + rotation @ vessel.centre_of_gravity
+    position[2] = pose.position[2]
+
+    rest = pose_vessel(vessel, position, rotation)
+    at = compute_hydrostatics(rest)
     return Equilibrium(
-        qpos=vessel.qpos_at(final.position, final.rotation),
-        hydrostatics=found,
-        eigenvalues=np.asarray(
-            np.linalg.eigvalsh(inverse @ (0.5 * (restoring + restoring.T)) @ inverse.T), float
-        ),
-        energy=final.energy,
-        iterations=steps,
+        qpos=vessel.qpos_at(position, rotation),
+        hydrostatics=at,
+        eigenvalues=_compute_eigenvalues(at),
+        energy=rest.energy,
+        iterations=iterations,
     )
 
 
-def _same(one: FloatingPose, two: FloatingPose) -> bool:
-    """Whether two poses differ by heading alone, or by a roll without resistance, as of a log."""
-    scale = one.vessel.weight * one.vessel.radius
-    if abs(one.energy - two.energy) > LEVEL * scale:
-        return False
-    if _angle(one, two) < 1e-4:
-        return True
-    soft, stiff = np.linalg.eigvalsh(tilt_stiffness(one))
-    if stiff < SOFT * scale:
-        return True
-    return bool(soft < SOFT * stiff) and any(
-        abs(pose.energy - one.energy) <= LEVEL * scale and _angle(pose, two) <= STRIDE
-        for way in (1.0, -1.0)
-        for pose in _valley(one, way)
-    )
-
-
-def _valley(afloat: FloatingPose, way: float) -> Iterator[FloatingPose]:
-    """Poses along the softest direction, the stiff one kept in balance, once round or until they rise."""
-    base, scale = afloat.energy, afloat.vessel.weight * afloat.vessel.radius
-    axis = way * np.linalg.eigh(tilt_stiffness(afloat))[1][:, 0]
-    for _ in range(math.ceil(2.0 * math.pi / STRIDE)):
-        afloat = tilt(afloat, STRIDE * axis)
-        for _ in range(2):
-            values, axes = np.linalg.eigh(tilt_stiffness(afloat))
-            stiff = axes[:, 1]
-            if values[1] > 0.0:
-                afloat = tilt(afloat, stiff * (stiff @ afloat.force[1:] / values[1]))
-        axis = axes[:, 0] * np.copysign(1.0, axes[:, 0] @ axis)
-        yield afloat
-        if afloat.energy > base + LEVEL * scale:
-            return
-
-
-def _angle(one: FloatingPose, two: FloatingPose) -> float:
-    """Between what is down in two poses [rad]."""
-    a, b = one.rotation[2], two.rotation[2]
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
+def _compute_eigenvalues(at: Hydrostatics) -> NDArray[np.float64]:
+    """Eigenvalues (3,) [1/s^2] of stiffness over mass in heave, roll and pitch, ascending."""
+    stiffness = at.stiffness[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
+    mass_matrix = at.mass_matrix[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
+    inverse = np.linalg.inv(np.linalg.cholesky(mass_matrix))
+    symmetric = 0.5 * (stiffness + stiffness.T)
+    return np.asarray(np.linalg.eigvalsh(inverse @ symmetric @ inverse.T), float)

@@ -61,7 +61,7 @@ class FloatingPose:
 
     @property
     def energy(self) -> float:
-        """Potential energy of weight and buoyancy [J] over the level: `force` is minus its slope."""
+        """Potential energy of weight and buoyancy [J]; `force` is minus its slope."""
         height = self.position[2] - self.vessel.water.level
         return float(self.vessel.weight * height - self.buoyancy * (height + self.arm[2]))
 
@@ -106,9 +106,9 @@ def pose_vessel(vessel: Vessel, position: ArrayLike, rotation: ArrayLike) -> Flo
         rotation: world_from_vessel (3, 3).
     """
     origin = np.asarray(position, float)
-    turn = np.ascontiguousarray(rotation, float)
-    positions = origin + vessel.hull_positions @ turn.T
-    rotations = (turn @ vessel.hull_rotations).reshape(-1, 9)
+    world_from_vessel = np.ascontiguousarray(rotation, float)
+    positions = origin + vessel.hull_positions @ world_from_vessel.T
+    rotations = (world_from_vessel @ vessel.hull_rotations).reshape(-1, 9)
 
     # volume, and the way to its centroid
     wet = vessel.packed.submerge(positions, rotations, 0.0)
@@ -116,8 +116,8 @@ def pose_vessel(vessel: Vessel, position: ArrayLike, rotation: ArrayLike) -> Flo
     volume = float(volumes.sum())
     arm = np.zeros(3)
     if volume > 0.0:
-        held = volumes > 0.0
-        arm = volumes[held] @ (wet[held, clip.CENTROID] - origin) / volume
+        submerged = volumes > 0.0
+        arm = volumes[submerged] @ (wet[submerged, clip.CENTROID] - origin) / volume
     wetted_area = float(wet[:, clip.WETTED_AREA].sum())
 
     # the waterplanes of all hulls as one
@@ -131,4 +131,12 @@ def pose_vessel(vessel: Vessel, position: ArrayLike, rotation: ArrayLike) -> Flo
         low=extents[:, 0].min(axis=0),
         high=extents[:, 1].max(axis=0),
     )
-    return FloatingPose(vessel, origin, turn, volume, arm, wetted_area, waterplane)
+    return FloatingPose(
+        vessel=vessel,
+        position=origin,
+        rotation=world_from_vessel,
+        volume=volume,
+        arm=arm,
+        wetted_area=wetted_area,
+        waterplane=waterplane,
+    )

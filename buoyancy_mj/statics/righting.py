@@ -1,30 +1,26 @@
 """`righting_arm`: the GZ curve of a vessel, from upright to upside down."""
 
 import dataclasses
-import fnmatch
 import math
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Literal
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import trapezoid
-from scipy.optimize import brentq
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.balance import find_balance, find_heave_balance
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.floating_pose import FloatingPose
+from buoyancy_mj.statics.heeling import Heeling
 from buoyancy_mj.statics.vessel import Vessel
 
 POINTS = ("deck_edge*", "downflooding*")
-"""Sites that are looked for without being asked."""
+"""Globs of the sites to watch by default, which need not exist."""
 TRIMS = ("free", "fixed")
 """What trim may do while the vessel heels."""
 
@@ -34,45 +30,48 @@ class RightingArm:
     """The righting arm GZ over heel: weight times GZ is the torque that brings the vessel back."""
 
     heel: NDArray[np.float64]
-    """Angles (n,) [rad], ascending: turns about the axis, from the attitude of the start; as far as it balances."""
+    """Turns about the axis from the attitude at the start (n,) [rad], ascending.
+
+    They end where the vessel balances no more."""
     gz: NDArray[np.float64]
-    """Righting arms (n,) [m]: positive where they work against a positive heel."""
+    """Righting arms (n,) [m], positive where they work against a positive heel."""
     trim: NDArray[np.float64]
-    """Turns about the horizontal axis across (n,) [rad], bow down, from that of the start."""
+    """Turns about the horizontal axis across (n,) [rad], bow down, from the trim at the start."""
     draft: NDArray[np.float64]
-    """Depths of the lowest point (n,) [m]."""
+    """Depths of the lowest point of the hulls (n,) [m]."""
     vanishing: float
-    """The first heel past the largest arm at which it vanishes [rad], NaN if none does: angle of vanishing stability."""
+    """Angle of vanishing stability [rad]: the first zero past the largest arm; NaN without one."""
     immersed: dict[str, float]
-    """Least heel from 0 on at which each site goes under [rad], NaN if it never does."""
+    """Least heel from 0 on at which each site goes under [rad]; NaN if it never does."""
 
     @property
     def maximum(self) -> tuple[float, float]:
-        """The largest arm among positive heels: heel [rad] and arm [m]."""
+        """Heel [rad] and arm [m] where the arm is largest among positive heels."""
         ahead = np.flatnonzero(self.heel >= 0.0)
         best = int(ahead[self.gz[ahead].argmax()])
         return float(self.heel[best]), float(self.gz[best])
 
     def area(self, low: float = 0.0, high: float | None = None) -> float:
-        """Area under the curve [m rad] between two heels: the work per weight that heels it so far.
+        """Compute the area under the curve [m rad]: the work per weight that heels the vessel.
 
         Args:
-            low: from this heel [rad].
-            high: to this one; None for the angle of vanishing stability, or where there is none the end.
+            low: heel at the start [rad].
+            high: heel at the end [rad]; None for the angle of vanishing stability, or without one
+                for the end of the curve.
 
         Raises:
-            ModelError: heels outside of the curve.
+            ModelError: a heel lies outside of the curve.
         """
-        end = (
-            high
-            if high is not None
-            else self.vanishing
-            if math.isfinite(self.vanishing)
-            else float(self.heel[-1])
-        )
+        if high is not None:
+            end = high
+        elif math.isfinite(self.vanishing):
+            end = self.vanishing
+        else:
+            end = float(self.heel[-1])
         if not self.heel[0] <= low <= end <= self.heel[-1]:
             raise ModelError(
-                f"area from {low:g} to {end:g} rad; the curve goes from {self.heel[0]:g} to {self.heel[-1]:g} rad"
+                f"area from {low:g} to {end:g} rad; "
+                f"the curve goes from {self.heel[0]:g} to {self.heel[-1]:g} rad"
             )
         inside = self.heel[(self.heel > low) & (self.heel < end)]
         heels = np.array([low, *inside, end])
@@ -91,29 +90,34 @@ def righting_arm(
     body: str | None = None,
     selection: Selection = Selection(),
 ) -> RightingArm:
-    """The GZ curve of a vessel at the draft that carries its weight, its joints held.
+    """Compute the GZ curve of a vessel at the draft that carries its weight, its joints held.
 
-    Heel and trim are roll and pitch as in `Start`: turned about the horizontal axis across by the
-    trim, after the heel. With trim free no torque is left about that axis; of several balances it is
-    the one nearest to that at the heel before. Where that ends, the next one downhill follows, unless
-    it is end over end: then the curve ends, with a `BuoyancyWarning`.
+    Heel and trim are roll and pitch as in `Start`: the vessel heels first, then trims about the
+    horizontal axis across. With trim free no torque is left about that axis; of several balances
+    the curve follows the one nearest to that at the heel before. Where that ends, it goes on with
+    the next one downhill. If that one is end over end, the curve ends, with a `BuoyancyWarning`.
 
     Args:
         model: any MuJoCo model with a body that floats.
-        water: fresh and still at z = 0 if None; waves are left aside.
+        water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
         heel: angles (n,) [rad]; None for 0 to 180 degrees, one by one.
-        axis: direction of the axis it heels about, from the heading of the start to port [rad]; 0 for the
+        axis: direction of the axis of heel, from the heading at the start to port [rad]; 0 for the
             longitudinal axis, pi / 2 for a curve in trim.
-        trim: 'free', or 'fixed' to that of the start.
-        start: upright: coordinates of the model (nq,), or of its free joint alone (7,); the model's own if None.
+        trim: 'free', or 'fixed' to that at the start.
+        start: coordinates of the upright model (nq,), or of its free joint alone (7,);
+            `model.qpos0` if None.
         points: globs of the sites to watch, as deck edges and downflooding points.
-        body: name of the root body, where several float; None for the first that has hulls.
+        body: name of the root body, where several float; the first that has hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
-        EquilibriumError: it sinks, or does not balance at all.
-        ModelError: heels that are not finite, another trim, points that match no site, see also `statics.build_vessel`.
-        MeshError: a mesh that bounds no volume.
+        EquilibriumError: the vessel sinks, or does not balance at all.
+        ModelError: a heel is not finite, `trim` is another word, a glob matches no site; or see
+            `statics.building.build_vessel`.
+        MeshError: a mesh bounds no volume.
+
+    Example:
+        `math.degrees(righting_arm(model).vanishing)`
     """
     heels = np.radians(np.arange(181.0)) if heel is None else np.unique(np.asarray(heel, float))
     if not heels.size or not np.isfinite(heels).all() or not math.isfinite(axis):
@@ -121,7 +125,7 @@ def righting_arm(
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
     vessel = build_vessel(model, water, start, body=body, selection=selection)
-    return compute_righting_arm(vessel, heels, axis=axis, free=trim == "free", points=points)
+    return compute_righting_arm(vessel, heels, axis=axis, trim_free=trim == "free", points=points)
 
 
 def compute_righting_arm(
@@ -130,157 +134,96 @@ def compute_righting_arm(
     *,
     upright: NDArray[np.float64] | None = None,
     axis: float = 0.0,
-    free: bool = True,
+    trim_free: bool = True,
     points: Sequence[str] | str = POINTS,
 ) -> RightingArm:
-    """The GZ curve of a vessel from where it is, or from `upright`, world_from_vessel (3, 3); see `righting_arm`."""
-    heeled = _Heeled(vessel, vessel.rotation if upright is None else upright, axis, free)
-    # outwards from the least, so that each trim is found from the one before
+    """Compute the GZ curve of a vessel, see `righting_arm`.
+
+    Args:
+        vessel: the vessel.
+        heels: angles (n,) [rad], ascending.
+        upright: attitude before it heels, world_from_vessel (3, 3); that of the vessel if None.
+        axis: direction of the axis of heel, from the heading of `upright` to port [rad].
+        trim_free: whether the vessel trims as it likes.
+        points: globs of the sites to watch.
+    """
+    globs = [points] if isinstance(points, str) else points
+    names = vessel.match_sites(globs, optional=POINTS)
+    start = vessel.rotation if upright is None else upright
+    heeling = Heeling(vessel, start, axis, trim_free=trim_free)
+
+    # the poses in ascending order of heel
+    by_heel = _heel_outwards(heeling, heels)
+    heels = np.array(sorted(by_heel))
+    poses = [by_heel[angle] for angle in heels.tolist()]
+
+    gz = np.array([heeling.measure_arm(pose) for pose in poses])
+    return RightingArm(
+        heel=heels,
+        gz=gz,
+        trim=np.array([heeling.measure_trim(pose) for pose in poses]),
+        draft=np.array([pose.draft for pose in poses]),
+        vanishing=_find_vanishing(heeling, heels, gz, poses),
+        immersed={
+            name: _find_immersion(heeling, vessel.sites[name], heels, poses) for name in names
+        },
+    )
+
+
+def _heel_outwards(heeling: Heeling, heels: NDArray[np.float64]) -> dict[float, FloatingPose]:
+    """Poses at heels [rad], found outwards from the least, so that each trim begins at the last."""
     poses: dict[float, FloatingPose] = {}
     for side in (heels[heels >= 0.0], heels[heels < 0.0][::-1]):
         last = None
         for angle in side.tolist():
             try:
-                last = heeled(angle, last)
+                last = heeling.heel(angle, last)
             except EquilibriumError as error:
                 if last is None:
                     raise
                 warnings.warn(
-                    f"the righting arm ends there: {error}", BuoyancyWarning, stacklevel=3
+                    f"the righting arm ends there: {error}", BuoyancyWarning, stacklevel=4
                 )
                 break
             poses[angle] = last
-    heels = np.array(sorted(poses))
-    ordered = [poses[angle] for angle in heels.tolist()]
-    gz = np.array([heeled.arm(pose) for pose in ordered])
-    ahead = [i for i in range(len(heels)) if heels[i] >= 0.0]
-    return RightingArm(
-        heel=heels,
-        gz=gz,
-        trim=np.array([heeled.trim(pose) for pose in ordered]),
-        draft=np.array(
-            [
-                vessel.water.level - pose.position[2] - (vessel.points @ pose.rotation[2]).min()
-                for pose in ordered
-            ]
-        ),
-        vanishing=_vanishing(heeled, heels, gz, ordered, ahead),
-        immersed={
-            name: _immersed(heeled, vessel.sites[name], heels, ordered, ahead)
-            for name in _names(vessel, points)
-        },
-    )
+    return poses
 
 
-class _Heeled:
-    """A vessel brought to a heel, in axes whose x is the axis of heel."""
-
-    def __init__(
-        self, vessel: Vessel, upright: NDArray[np.float64], axis: float, free: bool
-    ) -> None:
-        self.vessel, self.free = vessel, free
-        heading = Attitude.from_matrix(upright).heading + axis
-        self.back = Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix()
-        self.upright = self.back.T @ upright
-        self.across = self.back[:2, 1:2].copy()
-
-    def __call__(self, heel: float, last: FloatingPose | None) -> FloatingPose:
-        """The vessel at a heel, its trim found from the last."""
-        lean = 0.0 if last is None else self.trim(last)
-        turn = self.back @ Rotation.from_euler("YX", [lean, heel]).as_matrix() @ self.upright
-        height = None if last is None else float(last.position[2])
-        if not self.free:
-            return find_heave_balance(self.vessel, turn, height)
-        try:
-            afloat, _ = find_balance(self.vessel, turn, height, free=self.across, stable=False)
-        except EquilibriumError:
-            # where the balance ends, the vessel goes downhill to another
-            afloat, _ = find_balance(self.vessel, turn, height, free=self.across)
-        # the cosine of the trim
-        if self._turn(afloat)[2, 1:] @ [math.sin(heel), math.cos(heel)] < 0.0:
-            raise EquilibriumError(
-                f"at a heel of {math.degrees(heel):.4g} degrees it balances only end over end; use trim='fixed' or less heel"
-            )
-        return afloat
-
-    def arm(self, afloat: FloatingPose) -> float:
-        """The righting arm."""
-        return -float(self.back[:2, 1] @ afloat.arm[:2])
-
-    def trim(self, afloat: FloatingPose) -> float:
-        """Bow down, from that of the start [rad]."""
-        return -math.asin(max(-1.0, min(1.0, float(self._turn(afloat)[2, 0]))))
-
-    def _turn(self, afloat: FloatingPose) -> NDArray[np.float64]:
-        """From upright to here, in axes along and across (3, 3)."""
-        return self.back.T @ afloat.rotation @ self.upright.T
-
-
-def _vanishing(
-    heeled: _Heeled,
+def _find_vanishing(
+    heeling: Heeling,
     heels: NDArray[np.float64],
     gz: NDArray[np.float64],
     poses: Sequence[FloatingPose],
-    ahead: Sequence[int],
 ) -> float:
-    """The first zero of the arm past its largest."""
-    if not ahead or gz[ahead].max() <= 0.0:
+    """Find the first zero of the arm past its largest [rad]; NaN without one."""
+    first = int(np.searchsorted(heels, 0.0))
+    if gz[first:].max(initial=0.0) <= 0.0:
         return math.nan
-    best = ahead[int(gz[ahead].argmax())]
-    # upside down a symmetric vessel has none but for rounding
-    least = 1e-9 * heeled.vessel.radius
+    best = first + int(gz[first:].argmax())
+
+    # upside down the arm of a symmetric vessel is zero but for rounding
+    least = 1e-9 * heeling.vessel.radius
     for i in range(best, len(heels) - 1):
         if gz[i] > least >= gz[i + 1]:
-            return _root(heeled, heeled.arm, poses[i], heels[i], heels[i + 1])
+            return heeling.find_root(heeling.measure_arm, poses[i], heels[i], heels[i + 1])
     return math.nan
 
 
-def _immersed(
-    heeled: _Heeled,
+def _find_immersion(
+    heeling: Heeling,
     site: NDArray[np.float64],
     heels: NDArray[np.float64],
     poses: Sequence[FloatingPose],
-    ahead: Sequence[int],
 ) -> float:
-    """The least positive heel at which a site goes under."""
+    """Find the least positive heel at which a site (3,) [m] goes under [rad]; NaN without one."""
 
     def height(pose: FloatingPose) -> float:
-        return float(pose.position[2] + pose.rotation[2] @ site) - heeled.vessel.water.level
+        return float(pose.position[2] + pose.rotation[2] @ site) - heeling.vessel.water.level
 
-    for i in ahead:
+    first = int(np.searchsorted(heels, 0.0))
+    for i in range(first, len(heels)):
         if height(poses[i]) <= 0.0:
-            if i == ahead[0]:
+            if i == first:
                 return float(heels[i])
-            return _root(heeled, height, poses[i - 1], heels[i - 1], heels[i])
+            return heeling.find_root(height, poses[i - 1], heels[i - 1], heels[i])
     return math.nan
-
-
-def _root(
-    heeled: _Heeled,
-    value: Callable[[FloatingPose], float],
-    last: FloatingPose,
-    low: float,
-    high: float,
-) -> float:
-    """The heel at which a value changes sign; the far end if rounding hides it."""
-
-    def at(angle: float) -> float:
-        return value(heeled(angle, last))
-
-    if at(low) * at(high) >= 0.0:
-        return float(high)
-    return float(brentq(at, low, high, xtol=1e-10))
-
-
-def _names(vessel: Vessel, points: Sequence[str] | str) -> list[str]:
-    """Sites that match; those looked for without being asked need not exist."""
-    patterns = [points] if isinstance(points, str) else list(points)
-    names: dict[str, None] = {}
-    for pattern in patterns:
-        found = [name for name in vessel.sites if fnmatch.fnmatchcase(name, pattern)]
-        if not found and pattern not in POINTS:
-            raise ModelError(
-                f"no site of the vessel matches '{pattern}'; {choices(pattern, vessel.sites)}"
-            )
-        names |= dict.fromkeys(found)
-    return list(names)

@@ -1,14 +1,16 @@
 """`Vessel`: a kinematic tree with hulls, as one rigid body, its joints held."""
 
 import dataclasses
+import fnmatch
 import functools
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
@@ -159,6 +161,26 @@ class Vessel:
     def free(self) -> bool:
         """Whether the root body has a free joint."""
         return has_free_joint(self.model, self.root)
+
+    def match_sites(self, patterns: Sequence[str], optional: Sequence[str] = ()) -> list[str]:
+        """Find the names of the sites that match globs, each once.
+
+        Args:
+            patterns: globs.
+            optional: those of the globs that may match no site.
+
+        Raises:
+            ModelError: another glob matches no site.
+        """
+        names: dict[str, None] = {}
+        for pattern in patterns:
+            matching = [name for name in self.sites if fnmatch.fnmatchcase(name, pattern)]
+            if not matching and pattern not in optional:
+                raise ModelError(
+                    f"no site of the vessel matches '{pattern}'; {choices(pattern, self.sites)}"
+                )
+            names |= dict.fromkeys(matching)
+        return list(names)
 
     def qpos_at(
         self, position: NDArray[np.float64], rotation: NDArray[np.float64]

@@ -11,7 +11,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.inspection import report
-from buoyancy_mj.inspection.inspection import Inspection, VesselInspection
+from buoyancy_mj.inspection.inspection import Inspection
+from buoyancy_mj.inspection.vessels import VesselInspection
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.surface import to_manifold
