@@ -13,10 +13,10 @@ from buoyancy_mj import (
     ModelError,
     SceneError,
     Simulation,
-    read_coefficients,
     add_coefficients,
+    read_coefficients,
 )
-from buoyancy_mj.loads.coefficients import DOFS
+from buoyancy_mj.loads.datasets import DOFS
 from buoyancy_mj.scenes.scene import scene_from_table
 
 OMEGAS = np.array([1.0, math.sqrt(9.81 / 5.0), 2.0])
