@@ -1,4 +1,4 @@
-"""What classes that hold values share: fields that `help()` shows, and attributes that stay as they were made."""
+"""Classes that hold values: `help()` shows their fields, and some refuse to be changed."""
 
 import ast
 import dataclasses
@@ -11,7 +11,7 @@ from typing import Any, NoReturn
 
 
 def field_docs(cls: type) -> dict[str, str]:
-    """The docstring under each field of a dataclass, by the name of the field, inherited ones first."""
+    """The docstrings under the fields of a dataclass, by field, inherited ones first."""
     docs: dict[str, str] = {}
     for base in reversed(cls.__mro__):
         docs |= _docs_of_class(base.__module__, base.__name__)
@@ -27,12 +27,12 @@ def show_fields(cls: type) -> None:
 
 
 class ReadOnly:
-    """An object whose public attributes are set once, when it is made.
+    """A base class of objects whose public attributes are set once, in `__init__`.
 
     A subclass calls `_seal` with a sentence that says what to do instead, at the end of `__init__`.
 
     Raises:
-        AttributeError: a public attribute is assigned or deleted after that.
+        AttributeError: a public attribute is assigned or deleted afterwards.
     """
 
     _instead = ""
@@ -52,8 +52,8 @@ class ReadOnly:
 
     def _refuse(self, name: str) -> NoReturn:
         raise AttributeError(
-            f"'{name}' of a {type(self).__name__} cannot be changed, since it would change nothing; "
-            f"{self._instead}"
+            f"'{name}' of a {type(self).__name__} cannot be changed, since it would change "
+            f"nothing; {self._instead}"
         )
 
 

@@ -1,4 +1,4 @@
-"""The registration of the plugin with MuJoCo: its struct, its compiled functions, and their question."""
+"""The plugin registered with MuJoCo: its struct, its compiled functions, and what they ask."""
 
 import ctypes
 import functools
@@ -37,6 +37,7 @@ def register() -> None:
 
 def _resolve(model: int, data: int, instance: int) -> None:
     """Put the address of a record for a model into the engine's data."""
+    # data made while a water is made, to look at the poses of its hulls
     if is_making_water():
         return
     with LOCK:
@@ -65,7 +66,10 @@ class _Plugin(ctypes.Structure):
 
 
 class _Engine:
-    """The plugin as the engine knows it, never freed: data may be deleted after the interpreter has gone."""
+    """The plugin as the engine knows it.
+
+    It is never freed, since data may be deleted after the interpreter has gone.
+    """
 
     def __init__(self) -> None:
         native.require_known_layout()

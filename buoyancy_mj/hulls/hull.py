@@ -31,6 +31,10 @@ class Hull:
     geoms: tuple[int, ...] = ()
     """Indices of all geoms it is made of."""
 
+    def __post_init__(self) -> None:
+        self.body_from_geom.setflags(write=False)
+        self.position.setflags(write=False)
+
     @property
     def displaced_volume(self) -> float:
         """Volume of water that it displaces fully submerged [m^3]."""
