@@ -1,7 +1,7 @@
-"""Errors, each one sentence with the value got, what was possible and the mend.
+"""What can go wrong, said in one sentence.
 
 In: nothing.
-Out: exceptions with one root, `BuoyancyError`, and `choices`, which suggests the nearest name.
+Out: exceptions with one root, `BuoyancyError`, that give the value got, what was possible, the mend.
 May import: nothing of this package.
 """
 

@@ -4,6 +4,7 @@ import ast
 import dataclasses
 import functools
 import inspect
+import itertools
 import sys
 import textwrap
 from pathlib import Path
@@ -23,7 +24,7 @@ def show_fields(cls: type) -> None:
 
     The source is read when somebody first asks for the docstring, so that imports stay fast.
     """
-    cls.__doc__ = _FieldsShown(inspect.cleandoc(cls.__doc__ or ""))  # type: ignore[assignment]
+    cls.__doc__ = _DocWithFields(inspect.cleandoc(cls.__doc__ or ""))  # type: ignore[assignment]
 
 
 class ReadOnly:
@@ -57,8 +58,8 @@ class ReadOnly:
         )
 
 
-class _FieldsShown:
-    """A class's docstring, made when it is first read."""
+class _DocWithFields:
+    """The docstring of a dataclass with its fields, made when it is first read."""
 
     def __init__(self, summary: str) -> None:
         self._summary = summary
@@ -81,13 +82,20 @@ def _docs_of_class(module: str, name: str) -> dict[str, str]:
         return {}
     for node in ast.parse(Path(file).read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ClassDef) and node.name == name:
-            return {
-                field.target.id: inspect.cleandoc(doc.value.value)
-                for field, doc in zip(node.body, node.body[1:], strict=False)
-                if isinstance(field, ast.AnnAssign)
-                and isinstance(field.target, ast.Name)
-                and isinstance(doc, ast.Expr)
-                and isinstance(doc.value, ast.Constant)
-                and isinstance(doc.value.value, str)
-            }
+            return _docs_under_fields(node)
     return {}
+
+
+def _docs_under_fields(node: ast.ClassDef) -> dict[str, str]:
+    """The text under each field of a class, where one stands."""
+    docs = {}
+    for field, doc in itertools.pairwise(node.body):
+        if (
+            isinstance(field, ast.AnnAssign)
+            and isinstance(field.target, ast.Name)
+            and isinstance(doc, ast.Expr)
+            and isinstance(doc.value, ast.Constant)
+            and isinstance(doc.value.value, str)
+        ):
+            docs[field.target.id] = inspect.cleandoc(doc.value.value)
+    return docs
