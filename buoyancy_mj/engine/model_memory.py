@@ -10,12 +10,13 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.settings.config import KEYS
 
 MODEL_ARRAYS = (
-    *("geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group"),
-    *("geom_size", "geom_pos", "geom_quat", "mesh_vertadr", "mesh_vertnum", "mesh_vert"),
-    *("mesh_faceadr", "mesh_facenum", "mesh_face", "body_parentid", "body_weldid", "body_pos"),
-    *("body_quat", "body_plugin", "text_adr", "text_size", "text_data", "numeric_adr"),
-    *("numeric_size", "numeric_data", "names", "plugin"),
-)
+    "geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group",
+    "geom_size", "geom_pos", "geom_quat",
+    "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
+    "body_parentid", "body_weldid", "body_pos", "body_quat", "body_plugin",
+    "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
+    "names", "plugin",
+)  # fmt: skip
 """Arrays of mjModel from which the hulls and their drag are made.
 
 Models that agree in them share a water. Masses, the timestep and all else that matters are read

@@ -16,10 +16,10 @@ from buoyancy_mj.kernels.entries.closures import Closure
 from buoyancy_mj.settings.config import KEYS
 
 _HOOKS = (
-    *("nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance"),
-    *("visualize", "actuator_act_dot", "sdf_distance", "sdf_gradient", "sdf_staticdistance"),
-    *("sdf_attribute", "sdf_aabb"),
-)
+    "nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance", "visualize",
+    "actuator_act_dot",
+    "sdf_distance", "sdf_gradient", "sdf_staticdistance", "sdf_attribute", "sdf_aabb",
+)  # fmt: skip
 """Functions of MuJoCo's mjpPlugin, in their order."""
 _INT = ctypes.c_int
 _WORD = ctypes.c_int64
