@@ -26,7 +26,7 @@ class SceneError(BuoyancyError):
 
 
 class WaterError(BuoyancyError):
-    """Water or waves that do not exist in nature or in this package."""
+    """Water or waves that exist neither in nature nor in this package."""
 
 
 class DivergenceError(BuoyancyError):
@@ -34,11 +34,11 @@ class DivergenceError(BuoyancyError):
 
 
 class MethodError(BuoyancyError):
-    """A way to find what is under water that does not exist, or an option of it that makes no sense."""
+    """A method of submersion that does not exist, or an option of one that makes no sense."""
 
 
 class BallastError(BuoyancyError):
-    """A draft or attitude that no ballast at the given places can bring."""
+    """A draft or attitude that no ballast at the sites can bring."""
 
 
 class EquilibriumError(BuoyancyError):
@@ -46,7 +46,7 @@ class EquilibriumError(BuoyancyError):
 
 
 class EngineError(BuoyancyError):
-    """A MuJoCo whose inside is not what compiled code here relies on."""
+    """A MuJoCo that differs inside from what compiled code here relies on."""
 
 
 class SweepError(BuoyancyError):
@@ -58,11 +58,11 @@ class RecordingError(BuoyancyError):
 
 
 class BuoyancyWarning(UserWarning):
-    """Something was mended, left out or is in doubt, and the user should know."""
+    """A repair, an omission or a doubt that the user should know of."""
 
 
 def choices(got: str, possible: Iterable[str]) -> str:
-    """The tail of an error message: the nearest match to `got`, if any, and all that was possible."""
+    """The tail of an error message: the nearest match to `got`, and all that is possible."""
     names = sorted(possible)
     near = difflib.get_close_matches(got, names, n=1)
     hint = f"did you mean '{near[0]}'? " if near else ""

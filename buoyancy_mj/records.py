@@ -1,9 +1,10 @@
-"""What classes that hold values share: fields that `help()` shows, and attributes that stay as they were made."""
+"""Classes that hold values: `help()` shows their fields, and some refuse to be changed."""
 
 import ast
 import dataclasses
 import functools
 import inspect
+import itertools
 import sys
 import textwrap
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any, NoReturn
 
 
 def field_docs(cls: type) -> dict[str, str]:
-    """The docstring under each field of a dataclass, by the name of the field, inherited ones first."""
+    """The docstrings under the fields of a dataclass, by field, inherited ones first."""
     docs: dict[str, str] = {}
     for base in reversed(cls.__mro__):
         docs |= _docs_of_class(base.__module__, base.__name__)
@@ -23,16 +24,16 @@ def show_fields(cls: type) -> None:
 
     The source is read when somebody first asks for the docstring, so that imports stay fast.
     """
-    cls.__doc__ = _FieldsShown(inspect.cleandoc(cls.__doc__ or ""))  # type: ignore[assignment]
+    cls.__doc__ = _DocWithFields(inspect.cleandoc(cls.__doc__ or ""))  # type: ignore[assignment]
 
 
 class ReadOnly:
-    """An object whose public attributes are set once, when it is made.
+    """A base class of objects whose public attributes are set once, in `__init__`.
 
     A subclass calls `_seal` with a sentence that says what to do instead, at the end of `__init__`.
 
     Raises:
-        AttributeError: a public attribute is assigned or deleted after that.
+        AttributeError: a public attribute is assigned or deleted afterwards.
     """
 
     _instead = ""
@@ -52,13 +53,13 @@ class ReadOnly:
 
     def _refuse(self, name: str) -> NoReturn:
         raise AttributeError(
-            f"'{name}' of a {type(self).__name__} cannot be changed, since it would change nothing; "
-            f"{self._instead}"
+            f"'{name}' of a {type(self).__name__} cannot be changed, since it would change "
+            f"nothing; {self._instead}"
         )
 
 
-class _FieldsShown:
-    """A class's docstring, made when it is first read."""
+class _DocWithFields:
+    """The docstring of a dataclass with its fields, made when it is first read."""
 
     def __init__(self, summary: str) -> None:
         self._summary = summary
@@ -81,13 +82,20 @@ def _docs_of_class(module: str, name: str) -> dict[str, str]:
         return {}
     for node in ast.parse(Path(file).read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ClassDef) and node.name == name:
-            return {
-                field.target.id: inspect.cleandoc(doc.value.value)
-                for field, doc in zip(node.body, node.body[1:], strict=False)
-                if isinstance(field, ast.AnnAssign)
-                and isinstance(field.target, ast.Name)
-                and isinstance(doc, ast.Expr)
-                and isinstance(doc.value, ast.Constant)
-                and isinstance(doc.value.value, str)
-            }
+            return _docs_under_fields(node)
     return {}
+
+
+def _docs_under_fields(node: ast.ClassDef) -> dict[str, str]:
+    """The text under each field of a class, where one stands."""
+    docs = {}
+    for field, doc in itertools.pairwise(node.body):
+        if (
+            isinstance(field, ast.AnnAssign)
+            and isinstance(field.target, ast.Name)
+            and isinstance(doc, ast.Expr)
+            and isinstance(doc.value, ast.Constant)
+            and isinstance(doc.value.value, str)
+        ):
+            docs[field.target.id] = inspect.cleandoc(doc.value.value)
+    return docs

@@ -63,7 +63,7 @@ def test_a_thin_disc_has_its_limits():
     assert found[3] == pytest.approx(16 / 45, rel=1e-4)
 
 
-def test_of_an_ellipsoid_the_estimate_is_its_own_wherever_it_sits():
+def test_the_estimate_for_an_ellipsoid_is_exact_wherever_it_sits():
     model = vessels.of_geoms(
         '<geom type="ellipsoid" size=".5 .3 .2" pos=".1 .2 -.1" euler="20 30 40" mass="9"/>'
     )
@@ -395,8 +395,8 @@ def test_what_the_model_states_comes_before_an_estimate():
     model = mujoco.MjModel.from_xml_string(
         ARM.format(hull=words(DIAGONAL), arm=words(DIAGONAL)).replace("added_mass:arm", "other")
     )
-    stated = Buoyancy(model).added_mass
-    assert stated.bodies.tolist() == [model.body("hull").id]
+    of_the_model = Buoyancy(model).added_mass
+    assert of_the_model.bodies.tolist() == [model.body("hull").id]
     both = Buoyancy(model, added_mass="estimate").added_mass
     assert both.bodies.tolist() == [model.body("hull").id, model.body("arm").id]
     assert both.matrices[0].reshape(6, 6) == pytest.approx(np.diag(DIAGONAL))
@@ -418,7 +418,7 @@ def test_above_the_water_nothing_is_added():
 
 
 @pytest.mark.parametrize(
-    ("given", "message"),
+    ("added_mass", "message"),
     [
         ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
         (
@@ -448,10 +448,10 @@ def test_above_the_water_nothing_is_added():
         ),
     ],
 )
-def test_what_makes_no_sense_is_told(given, message):
+def test_added_mass_that_makes_no_sense_is_refused(added_mass, message):
     model = mujoco.MjModel.from_xml_string(ARM.format(hull=words(DIAGONAL), arm=words(DIAGONAL)))
     with pytest.raises(ModelError, match=message):
-        Buoyancy(model, added_mass=given)
+        Buoyancy(model, added_mass=added_mass)
 
 
 def test_a_body_whose_inertia_is_kept_as_a_diagonal_takes_what_fits():

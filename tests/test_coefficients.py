@@ -16,7 +16,7 @@ from buoyancy_mj import (
     add_coefficients,
     read_coefficients,
 )
-from buoyancy_mj.loads.coefficients import DOFS
+from buoyancy_mj.loads.datasets import DOFS
 from buoyancy_mj.scenes.scene import scene_from_table
 
 OMEGAS = np.array([1.0, math.sqrt(9.81 / 5.0), 2.0])
@@ -38,7 +38,7 @@ def hemisphere(tmp_path_factory):
     return path
 
 
-def made(path, names=DOFS, added=None, damping=None, **coords):
+def write_dataset(path, names=DOFS, added=None, damping=None, **coords):
     """A dataset as those codes write it."""
     n = len(names)
     matrices = {
@@ -108,7 +108,7 @@ def test_a_scene_names_a_dataset(hemisphere, tmp_path):
     down = [t for (t, z), (_, after) in itertools.pairwise(heights) if z > 0.0 >= after]
     assert np.diff(down).mean() == pytest.approx(period, rel=0.02)
 
-    def told(message, **changed):
+    def refuse(message, **changed):
         with pytest.raises((ModelError, SceneError), match=message):
             Simulation(
                 scene_from_table(
@@ -116,19 +116,19 @@ def test_a_scene_names_a_dataset(hemisphere, tmp_path):
                 )
             )
 
-    told("the model has no body 'boat'", body="boat")
-    told("none.nc' cannot be read: there is no such file", file="none.nc")
-    told("period is -1.0 s", period=-1.0)
-    told(
+    refuse("the model has no body 'boat'", body="boat")
+    refuse("none.nc' cannot be read: there is no such file", file="none.nc")
+    refuse("period is -1.0 s", period=-1.0)
+    refuse(
         "coefficients: unknown key 'depth'; possible: body, centre, file, period, submerged",
         depth=3,
     )
-    made(tmp_path / "two.nc", ["left__Heave", "right__Heave"])
-    told("'two.nc' has the bodies left, right; name them as the model does", file="two.nc")
+    write_dataset(tmp_path / "two.nc", ["left__Heave", "right__Heave"])
+    refuse("'two.nc' has the bodies left, right; name them as the model does", file="two.nc")
 
 
-def test_the_nearest_frequency_is_taken_and_the_wet_part_divided_out(tmp_path):
-    path = made(tmp_path / "a.nc")
+def test_the_nearest_frequency_counts_and_the_wet_part_divided_out(tmp_path):
+    path = write_dataset(tmp_path / "a.nc")
     assert read_coefficients(path, 2 * math.pi / 1.4)["body"].added_mass[2, 2] == 3.0
     found = read_coefficients(path, 2 * math.pi / 1.6, submerged=0.25)["body"]
     assert (found.omega, found.added_mass[2, 2]) == (2.0, 120.0)
@@ -136,7 +136,7 @@ def test_the_nearest_frequency_is_taken_and_the_wet_part_divided_out(tmp_path):
 
 
 def test_bodies_stand_apart_and_what_is_missing_is_zero(tmp_path):
-    path = made(tmp_path / "a.nc", ["left__Heave", "left__Pitch", "right__Heave"])
+    path = write_dataset(tmp_path / "a.nc", ["left__Heave", "left__Pitch", "right__Heave"])
     found = read_coefficients(path, 6.0)
     assert sorted(found) == ["left", "right"]
     assert np.diag(found["left"].added_mass).tolist() == [0.0, 0.0, 1.0, 0.0, 2.0, 0.0]
@@ -145,9 +145,9 @@ def test_bodies_stand_apart_and_what_is_missing_is_zero(tmp_path):
 
 def test_added_mass_is_carried_from_its_centre_to_the_origin(tmp_path):
     centre = np.array([0.3, -0.2, 0.5])
-    path = made(tmp_path / "a.nc", rotation_center=("space_coordinate", centre))
+    path = write_dataset(tmp_path / "a.nc", rotation_center=("space_coordinate", centre))
     found = read_coefficients(path, 6.0)["body"].added_mass
-    # kinetic energy is the same, told by the velocity of the origin
+    # kinetic energy is the same, from the velocity of the origin
     rng = np.random.default_rng(0)
     v, w = rng.normal(size=(2, 3))
     there = np.concatenate([v + np.cross(w, centre), w])
@@ -161,30 +161,35 @@ def test_added_mass_is_carried_from_its_centre_to_the_origin(tmp_path):
     [
         (lambda path: read_coefficients(path / "none.nc", 4.0), "none.nc' cannot be read"),
         (
-            lambda path: read_coefficients(made(path / "a.nc"), 0.0),
+            lambda path: read_coefficients(write_dataset(path / "a.nc"), 0.0),
             "period is 0.0 s and submerged 1.0",
         ),
-        (lambda path: read_coefficients(made(path / "a.nc"), 4.0, submerged=2.0), "at most 1"),
         (
-            lambda path: read_coefficients(made(path / "a.nc"), 4.0, centre=(1, 2)),
+            lambda path: read_coefficients(write_dataset(path / "a.nc"), 4.0, submerged=2.0),
+            "at most 1",
+        ),
+        (
+            lambda path: read_coefficients(write_dataset(path / "a.nc"), 4.0, centre=(1, 2)),
             "give one of three numbers",
         ),
         (
-            lambda path: read_coefficients(made(path / "a.nc", ["Bend"]), 4.0),
+            lambda path: read_coefficients(write_dataset(path / "a.nc", ["Bend"]), 4.0),
             "by none of Surge, Sway, .*it has Bend",
         ),
         (
-            lambda path: read_coefficients(made(path / "a.nc", added=np.full((6, 6), np.nan)), 4.0),
+            lambda path: read_coefficients(
+                write_dataset(path / "a.nc", added=np.full((6, 6), np.nan)), 4.0
+            ),
             "holds added_mass that is no finite number at 2 rad/s",
         ),
     ],
 )
-def test_datasets_that_make_no_sense_are_told(tmp_path, how, message):
+def test_datasets_that_make_no_sense_are_refused(tmp_path, how, message):
     with pytest.raises(ModelError, match=message):
         how(tmp_path)
 
 
-def test_another_dataset_is_told(tmp_path):
+def test_another_dataset_is_refused(tmp_path):
     xarray.Dataset({"temperature": ("x", [1.0])}).to_netcdf(tmp_path / "a.nc")
     with pytest.raises(ModelError, match="has no 'added_mass'; it has temperature"):
         read_coefficients(tmp_path / "a.nc", 4.0)

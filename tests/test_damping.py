@@ -1,4 +1,4 @@
-"""Stated matrices, radiated waves and drag by panels: closed forms, limits, stable steps."""
+"""Damping matrices, radiated waves and drag by panels: closed forms, limits, stable steps."""
 
 import math
 
@@ -270,12 +270,12 @@ def test_panels_only_slow_a_light_body_down(native):
         ),
     ],
 )
-def test_damping_that_makes_no_sense_is_told(custom, message):
+def test_damping_that_makes_no_sense_is_refused(custom, message):
     with pytest.raises(ModelError, match=message):
         Buoyancy(of(custom))
 
 
-def test_bad_options_of_drag_are_told():
+def test_impossible_options_of_damping_are_refused():
     with pytest.raises(
         ModelError, match=r"damping viscous is 3; it must be Silhouette\(\), Panels\(\)"
     ):

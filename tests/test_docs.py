@@ -22,7 +22,7 @@ from typer.testing import CliRunner
 import buoyancy_mj
 from buoyancy_mj import Buoyancy, Water, water_in
 from buoyancy_mj.cli import app
-from buoyancy_mj.loads.coefficients import DOFS
+from buoyancy_mj.loads.datasets import DOFS
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import scene_from_table
 

@@ -57,7 +57,7 @@ def test_turning_a_plate_meets_the_flow_at_each_strips_own_speed():
     assert about_y == pytest.approx(0.5 * 1000.0 * 1.05 * b * a**4, rel=0.02)
 
 
-def test_linear_and_quadratic_parts_are_equal_at_the_stated_froude_number():
+def test_linear_and_quadratic_parts_are_equal_at_the_froude_number_of_the_options():
     d = damping(
         '<geom type="box" size=".5 .2 .2"/>', Damping(viscous=Silhouette(linear_froude=0.07))
     )
@@ -118,7 +118,7 @@ def test_a_body_at_rest_in_a_current_is_pushed_along():
     ("field", "value"),
     [("coefficient", -1.0), ("linear_froude", float("nan")), ("coefficient", "big")],
 )
-def test_impossible_drag_is_told(field, value):
+def test_impossible_drag_is_refused(field, value):
     with pytest.raises(
         ModelError, match=f"damping {field} is .*; it must be a finite number of at least 0"
     ):
@@ -165,7 +165,7 @@ def test_the_bluerov2_heavy_reaches_its_terminal_speeds(density, push, axis, spe
     assert data.qvel[axis] == pytest.approx(speed, rel=1e-2)
 
 
-def test_what_is_stated_replaces_the_estimate_of_that_body():
+def test_damping_that_the_model_gives_replaces_the_estimate_of_that_body():
     damping = resolve_damping(Damping(), rov(), find_hulls(rov()), 1000.0)
     assert damping.linear[0].tolist() == [13.7, 0, 33, 0, 0.8, 0]
     assert damping.quadratic[0].tolist() == [141, 217, 190, 1.19, 0.47, 1.5]
@@ -191,7 +191,7 @@ def test_what_is_stated_replaces_the_estimate_of_that_body():
         ),
     ],
 )
-def test_damping_that_makes_no_sense_is_told(before, after, message):
+def test_damping_that_makes_no_sense_is_refused(before, after, message):
     a = 0.15
     model = mujoco.MjModel.from_xml_string(ROV.format(a, a, a).replace(before, after))
     with pytest.raises(ModelError, match=message):

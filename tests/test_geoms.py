@@ -200,7 +200,7 @@ def test_a_geom_may_displace_as_its_convex_hull():
 
 
 @pytest.mark.parametrize(
-    ("options", "told"),
+    ("options", "message"),
     [
         (
             {"hull": "left=concave"},
@@ -215,8 +215,8 @@ def test_a_geom_may_displace_as_its_convex_hull():
         ({"fill": []}, "an empty choice of fill displaces nothing"),
     ],
 )
-def test_choices_that_make_no_sense_are_told(options, told):
-    with pytest.raises(ModelError, match=told):
+def test_choices_that_make_no_sense_are_refused(options, message):
+    with pytest.raises(ModelError, match=message):
         find_hulls(mujoco.MjModel.from_xml_string(PAIR.format(x=0.5, turn=0)), Selection(**options))
 
 
@@ -247,7 +247,7 @@ def test_an_open_mesh_is_refused_by_the_name_of_its_geom():
         Buoyancy(tub)
 
 
-def test_a_mesh_is_taken_as_it_is_drawn_and_not_as_its_convex_hull():
+def test_a_mesh_displaces_as_it_is_drawn_and_not_as_its_convex_hull():
     glass = two_cones(0.2, 0.3, sections=24)
     model = mesh_model(glass.vertices, glass.faces)
     assert find_hulls(model)[0].mesh.volume == pytest.approx(glass.volume, rel=1e-6)

@@ -126,7 +126,7 @@ def test_bodies_join_the_instance_they_name_and_take_along_what_is_welded_to_the
     assert stepped(model).body("one").xpos[2] < -0.5
 
 
-def test_several_instances_have_water_of_their_own():
+def test_several_instances_have_different_waters():
     model = compiled(
         sea("salt", density=2000, damping="false") + sea("oil", density=900, damping="false"),
         two='<plugin instance="oil"/>',
@@ -161,7 +161,7 @@ def test_a_second_water_by_callback_is_refused():
             pass
 
 
-def test_the_water_of_an_unknown_instance_is_told():
+def test_the_water_of_an_unknown_instance_is_refused():
     with pytest.raises(ModelError, match="the model has no water named 'see'; did you mean 'sea'"):
         water_in(with_water(), "see")
     with pytest.raises(ModelError, match=r"the model has no water named ''; possible: nothing"):
@@ -172,7 +172,7 @@ def test_the_water_of_an_unknown_instance_is_told():
 
 
 @pytest.mark.parametrize(
-    ("config", "told"),
+    ("config", "message"),
     [
         ({"density": "thick"}, "density is 'thick'; needed is a number"),
         ({"density": "-1"}, "density is -1.0; it must be above 0"),
@@ -202,8 +202,8 @@ def test_the_water_of_an_unknown_instance_is_told():
         ({"salt": "1"}, "unrecognized attribute 'plugin:salt'"),
     ],
 )
-def test_bad_configuration_is_a_compile_error_that_names_the_key(config, told):
-    with pytest.raises(ValueError, match=told):
+def test_bad_configuration_is_a_compile_error_that_names_the_key(config, message):
+    with pytest.raises(ValueError, match=message):
         compiled(sea(**config))
 
 
@@ -610,7 +610,7 @@ def test_a_scene_runs_where_passive_forces_are_skipped(tmp_path):
     assert list(simulation.frames())[-1].loads.total.force[2] > 0.0
 
 
-def test_what_the_water_refuses_is_told_as_ours(tmp_path):
+def test_a_scene_raises_the_errors_of_its_water(tmp_path):
     with pytest.raises(ModelError, match="no moving geom matches 'nothing'"):
         Simulation(scene_of(tmp_path, PLAIN, selection=Selection(geoms="nothing")))
     open_box = """<mujoco><asset>

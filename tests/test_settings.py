@@ -104,9 +104,7 @@ def test_water_of_a_spec_is_not_read_back_from_its_text():
 
 def test_matrices_of_added_mass_do_not_fit_into_a_model_s_text():
     spec = mujoco.MjSpec.from_file(str(catalog.models()["hourglass"]))
-    with pytest.raises(
-        buoyancy_mj.ModelError, match="state it there as numerics 'added_mass:BODY'"
-    ):
+    with pytest.raises(buoyancy_mj.ModelError, match="give it there as numerics 'added_mass:BODY'"):
         add_water(spec, added_mass={"hourglass": [1.0, 1.0, 1.0, 0.1, 0.1, 0.1]})
 
 

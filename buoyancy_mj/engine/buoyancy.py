@@ -1,4 +1,4 @@
-"""`Buoyancy`: water acting on the bodies of one MuJoCo model."""
+"""`Buoyancy`: the water that acts on the bodies of one MuJoCo model."""
 
 import contextlib
 import functools
@@ -33,7 +33,7 @@ class Buoyancy(ReadOnly):
     """Archimedes' force on every hull of a model, and drag on its bodies, as a callback of MuJoCo.
 
     The force rho g V acts upward at the centroid of each hull's submerged volume. It enters through
-    `data.qfrc_passive`, which MuJoCo computes anew before each call, with its own fluid forces; so
+    `data.qfrc_passive`, which MuJoCo computes anew before each call, with its own fluid forces. So
     `xfrc_applied` and `qfrc_applied` stay the user's and the viewer's alone, and saved states carry
     no water in them. Force and torque sensors see only `xfrc_applied`; `evaluate(data).xfrc` has
     its layout.
@@ -42,15 +42,22 @@ class Buoyancy(ReadOnly):
 
     Args:
         model: any MuJoCo model with bodies that move.
-        water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all options.
+        water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all
+            options.
         bodies: indices of the bodies whose geoms may displace; None for all.
-        options: any of the other fields of `Settings`: method, pressure, damping, added_mass, selection.
+        options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
+            selection.
 
     Raises:
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips an
             `mjcb_control`), sleep enabled, no geom that displaces water, a body without mass.
         MeshError: a mesh that bounds no volume.
         MethodError: there is no such method or pressure, or that method knows no pressure.
+
+    Example:
+        >>> buoyancy = Buoyancy(model, Water(waves=RegularWave(0.3, period=4.0)))
+        >>> with buoyancy.installed():
+        ...     mujoco.mj_step(model, data)
     """
 
     def __init__(
@@ -67,9 +74,13 @@ class Buoyancy(ReadOnly):
         """All options."""
         self.water = self.settings.water
         """The sea."""
+
+        # what water asks of a model
         check_actuation(model)
         check_sleep(model)
         read_gravity(model)
+
+        # the hulls
         self.hulls = find_hulls(model, self.settings.selection, bodies)
         """The hulls, in the order of the model's geoms."""
         self._owners = np.array([hull.body for hull in self.hulls])
@@ -81,7 +92,10 @@ class Buoyancy(ReadOnly):
             fills=[hull.fill for hull in self.hulls],
         )
         self.packed = self.settings.method.pack(hulls, self.water)
+        """The hulls as the method keeps them, ready to be submerged again and again."""
         check_waves(model, self.water, self.hulls)
+
+        # the loads
         self.added_mass = resolve_added_mass(
             model, self.hulls, self.water.density, self.settings.added_mass
         )
@@ -97,6 +111,8 @@ class Buoyancy(ReadOnly):
         )
         self.causes = self._load_model.causes
         """Names of the loads that act."""
+
+        # the bodies
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
         roots = set(model.body_rootid[self.bodies].tolist())
@@ -104,18 +120,21 @@ class Buoyancy(ReadOnly):
             [body for body in range(model.nbody) if model.body_rootid[body] in roots]
         )
         """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
+
         # what a step writes to; threads that share this object take turns
-        self._looked, self._record = self.record(), self.record()
-        self._before, self._after = np.zeros((2, model.nv))
+        self._looked = self.record()
+        self._record = self.record()
+        self._before = np.zeros(model.nv)
+        self._after = np.zeros(model.nv)
         self._last_data = 0
         self._lock = threading.RLock()
         self._seal("make another Buoyancy(model, water, ...)")
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
-        """Add the water's forces to `data.qfrc_passive`: an `mjcb_control`, or a call between mj_step1 and mj_step2.
+        """Add the water's forces to `data.qfrc_passive`, unless the water is `installed`.
 
-        Another model than the own one is left alone, and so are all while the water is `installed`.
-        A second call in the same pass replaces the first.
+        It has the signature of an `mjcb_control`, and may be called between mj_step1 and mj_step2.
+        Data of other models are left alone. A second call in the same pass replaces the first.
         """
         if model._address == self.model._address and not callbacks.is_installed(self):
             self.act(data)
@@ -124,21 +143,22 @@ class Buoyancy(ReadOnly):
     def installed(
         self, native: bool | None = None, *, copies: bool = False
     ) -> Iterator["Buoyancy"]:
-        """Lend itself to MuJoCo; the callback that was there still runs, and comes back at the end.
+        """Install the water as a callback of MuJoCo for the length of a `with` block.
 
-        It is lent as `mjcb_passive`, which MuJoCo calls once in each pass, in `mj_inverse` and for
-        finite differences too; or, since MuJoCo skips that one where a model disables springs and
-        dampers, as `mjcb_control`. Installed again while it acts, it changes nothing.
+        The callback that was there still runs, and is put back at the end. The water becomes
+        `mjcb_passive`, which MuJoCo calls once in each pass, in `mj_inverse` and for finite
+        differences too. Where a model disables springs and dampers, MuJoCo skips that callback, and
+        the water becomes `mjcb_control`. A second `installed` inside the block changes nothing.
 
         Args:
-            native: as a compiled C function, which needs no Python and takes no lock, so that threads
-                step side by side and `mujoco.batch` accepts it. None does so where it can be: not
-                beside a callback in Python, and not as `mjcb_control`.
-            copies: act on other models of the same compilation signature too, as `mujoco.batch` makes
-                of its model; compiled only.
+            native: whether to install a compiled C function. It needs no Python and takes no lock,
+                so that threads step side by side and `mujoco.batch` accepts it. None does so where
+                it is possible: not beside a callback in Python, and not as `mjcb_control`.
+            copies: whether to act on other models of the same compilation signature too, such as
+                `mujoco.batch` makes of its model; compiled only.
 
         Raises:
-            ModelError: actuation has been disabled.
+            ModelError: the model disables actuation, or brings its own water.
             EngineError: `native` or `copies` is asked for and cannot be; the message says why.
         """
         with callbacks.install(self, native, copies=copies):
@@ -161,14 +181,20 @@ class Buoyancy(ReadOnly):
                 self.compiled.forget(data._address)
 
     def evaluate(self, data: mujoco.MjData) -> Loads:
-        """The loads at the poses and velocities that `data` holds, as mj_forward left them; writes nothing."""
+        """The loads at the poses and velocities of `data`, as mj_forward left them; writes nothing.
+
+        Args:
+            data: of this model.
+        """
         with self._lock:
-            # as a run of its own, so that what the callback carries from step to step stays untouched
+            # as a separate run, so that what the callback carries between steps stays untouched
             self._evaluate(data, -data._address, self._looked)
             return self.loads_of(self._looked, data)
 
     def loads(self, data: mujoco.MjData) -> Loads:
-        """The loads that acted in the last pass of a step or of mj_forward over `data`, with the poses of that pass.
+        """The loads that acted in the last pass over `data`, at the poses of that pass.
+
+        A pass is part of a step, or of mj_forward.
 
         Raises:
             EngineError: none acted on these data so far, or many others were stepped since.
@@ -179,14 +205,14 @@ class Buoyancy(ReadOnly):
             )
             if record is None and self._last_data == data._address:
                 record = self._record
-            # a pass lies no more than a step back; what is older was of other data in the same place
+            # a pass lies no more than a step back; an older one was of other data at the address
             if (
                 record is None
                 or not abs(data.time - record.instant[0]) <= 1.001 * self.model.opt.timestep
             ):
                 raise EngineError(
-                    f"this water has not acted on these data at their time, {data.time:g} s; step them while it acts, "
-                    "call mj_forward, or use evaluate"
+                    f"this water has not acted on these data at their time, {data.time:g} s; "
+                    "step them while it acts, call mj_forward, or use evaluate"
                 )
             return self.loads_of(record, data)
 
@@ -238,7 +264,8 @@ class Buoyancy(ReadOnly):
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the floating bodies, world frame."""
         masses = self.model.body_mass[self.floating]
-        return masses @ data.xipos[self.floating] / masses.sum()
+        centre: NDArray[np.float64] = masses @ data.xipos[self.floating] / masses.sum()
+        return centre
 
     def _evaluate(self, data: mujoco.MjData, run: int, record: Record) -> None:
         passes.evaluate(self._load_model, self.model, data, self.gravity, run, record)

@@ -1,4 +1,4 @@
-"""How water is lent to MuJoCo as one of its callbacks, beside whoever is there already."""
+"""Water installed as a callback of MuJoCo, beside the callback that is there already."""
 
 import contextlib
 import ctypes
@@ -16,7 +16,7 @@ from buoyancy_mj.kernels.entries.closures import Closure
 
 _ENGINE_FUNCTION = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)
 _installed: dict[int, tuple["Installable", ...]] = {}
-"""What acts in a callback, by the identity of the callback, while it is lent."""
+"""The waters that act in a callback, by the identity of the callback."""
 
 
 class Installable(Protocol):
@@ -26,32 +26,46 @@ class Installable(Protocol):
 
     @property
     def compiled(self) -> CompiledWater:
-        """For compiled code."""
+        """What compiled code needs of this water."""
         ...
 
     def act(self, data: mujoco.MjData) -> None:
-        """Add to the passive forces of `data`, as Python code."""
+        """Add the water's forces to the passive forces of `data`, in Python."""
         ...
 
 
 @contextlib.contextmanager
 def install(water: Installable, native: bool | None, *, copies: bool) -> Iterator[None]:
-    """Lend `water` to MuJoCo, see `Buoyancy.installed`."""
+    """Install a water as a callback of MuJoCo, and put the old callback back at the end.
+
+    Args:
+        water: the water; installed already, it changes nothing.
+        native: whether as a compiled C function; None where it can be.
+        copies: whether to act on copies of its model too.
+
+    Raises:
+        ModelError: the model disables actuation, or brings its own water.
+        EngineError: `native` or `copies` is asked for and cannot be.
+    """
+    # the model must call it, and call it once
     check_actuation(water.model)
     if plugin_instances(water.model):
         raise ModelError(
-            f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would double it: "
-            "leave out the one or the other"
+            f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would "
+            "double it: leave out the one or the other"
         )
     if is_installed(water):
         yield
         return
+
+    # the callback that was there runs before the water
     slot = "control" if skips_passive(water.model.opt.disableflags) else "passive"
     previous = getattr(mujoco, f"get_mjcb_{slot}")()
     set_callback = getattr(mujoco, f"set_mjcb_{slot}")
     closure = _compiled(water, slot, previous, native, copies=copies)
     callback = _in_python(water, previous) if closure is None else _ENGINE_FUNCTION(closure.address)
     _installed[id(callback)] = (*_installed.get(id(previous), ()), water)
+
     set_callback(callback)
     try:
         yield
@@ -61,7 +75,7 @@ def install(water: Installable, native: bool | None, *, copies: bool) -> Iterato
 
 
 def is_installed(water: Installable) -> bool:
-    """Whether it is lent, and MuJoCo would call it now."""
+    """Whether MuJoCo has a callback of this water now."""
     now = mujoco.get_mjcb_passive(), mujoco.get_mjcb_control()
     return any(water is other for callback in now for other in _installed.get(id(callback), ()))
 
@@ -69,7 +83,7 @@ def is_installed(water: Installable) -> bool:
 def _compiled(
     water: Installable, slot: str, previous: Any, native: bool | None, *, copies: bool
 ) -> Closure | None:
-    """The callback as a C function; None where it is not wanted, or cannot be and need not."""
+    """The callback as a C function; None where Python serves, or must."""
     try:
         if native is False:
             raise EngineError("native=False asks for a callback in Python")
@@ -95,7 +109,7 @@ def _compiled(
 def _in_python(
     water: Installable, previous: Any
 ) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
-    """The callback in Python: first the one that was there before, then the water on its own model."""
+    """The callback in Python: first the one that was there, then the water on its own model."""
 
     def callback(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if hasattr(previous, "argtypes"):

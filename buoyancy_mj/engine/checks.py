@@ -1,4 +1,4 @@
-"""What water asks of a model before it acts: flags of MuJoCo, and enough depth under the waves."""
+"""Checks of a model before water acts on it: flags of MuJoCo, and the depth under the waves."""
 
 import math
 import warnings
@@ -30,8 +30,8 @@ def check_actuation(model: mujoco.MjModel) -> None:
     """
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
         raise ModelError(
-            "this model disables actuation, and MuJoCo then skips the control callback through which "
-            "water acts: remove <flag actuation='disable'/>, and disable single actuators by "
+            "this model disables actuation, and MuJoCo then skips the control callback through "
+            "which water acts: remove <flag actuation='disable'/>, and disable single actuators by "
             "<option actuatorgroupdisable> instead, or put the water into the model (add_water)"
         )
 
@@ -44,8 +44,8 @@ def check_sleep(model: mujoco.MjModel) -> None:
     """
     if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_SLEEP:
         raise ModelError(
-            "this model lets bodies at rest sleep, and MuJoCo does not wake them for water that moves: "
-            "remove <flag sleep='enable'/>"
+            "this model lets bodies at rest sleep, and MuJoCo does not wake them for water that "
+            "moves: remove <flag sleep='enable'/>"
         )
 
 
@@ -75,7 +75,7 @@ def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> N
         least_draft = volume / (0.5 * sum(hull.mesh.area for hull in of_vehicle))
         if least_draft > shallowest:
             raise ModelError(
-                f"the waves run in water {shallowest:g} m deep, and body '{body_name(model, body)}' "
-                f"has a draft of at least {least_draft:.3g} m in any attitude; "
-                "make the waves' depth greater"
+                f"the waves run in water {shallowest:g} m deep, and body "
+                f"'{body_name(model, body)}' has a draft of at least {least_draft:.3g} m in any "
+                "attitude; make the waves' depth greater"
             )

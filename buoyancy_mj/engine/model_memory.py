@@ -1,4 +1,4 @@
-"""Models read at their addresses in the engine's memory: a copy, a fingerprint, a plugin's texts."""
+"""Models at an address in the engine's memory: a copy, a fingerprint, a plugin's texts."""
 
 import ctypes
 import hashlib
@@ -10,15 +10,17 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.settings.config import KEYS
 
 MODEL_ARRAYS = (
-    *("geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group"),
-    *("geom_size", "geom_pos", "geom_quat", "mesh_vertadr", "mesh_vertnum", "mesh_vert"),
-    *("mesh_faceadr", "mesh_facenum", "mesh_face", "body_parentid", "body_weldid", "body_pos"),
-    *("body_quat", "body_plugin", "text_adr", "text_size", "text_data", "numeric_adr"),
-    *("numeric_size", "numeric_data", "names", "plugin"),
-)
-"""Arrays of mjModel from which the hulls and their drag are made: models that agree in them share a water.
+    "geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group",
+    "geom_size", "geom_pos", "geom_quat",
+    "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
+    "body_parentid", "body_weldid", "body_pos", "body_quat", "body_plugin",
+    "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
+    "names", "plugin",
+)  # fmt: skip
+"""Arrays of mjModel from which the hulls and their drag are made.
 
-What else matters, such as masses and the timestep, is read anew in each pass."""
+Models that agree in them share a water. Masses, the timestep and all else that matters are read
+anew in each pass."""
 
 _DISABLE = mujoco.mjtDisableBit
 _FLAGS = {
@@ -33,13 +35,13 @@ _WORD = ctypes.c_int64
 
 
 def read_config(model: int, instance: int) -> dict[str, str]:
-    """The texts of the configuration of a plugin instance of the model at an address, by key."""
+    """The configuration of a plugin instance of the model at an address: texts by key."""
     read = layout.function("mj_getPluginConfig", ctypes.c_char_p, _WORD, _INT, ctypes.c_char_p)
     return {key: (read(model, instance, key.encode()) or b"").decode() for key in KEYS}
 
 
 def fingerprint_model(model: int, instance: int) -> bytes:
-    """A hash (16 bytes) of all from which the water of an instance of the model at an address is made."""
+    """A hash (16 bytes) of all from which the water of an instance of a model is made."""
     texts = read_config(model, instance)
     digest = hashlib.blake2b(f"{instance} {texts}".encode(), digest_size=16)
     for name in MODEL_ARRAYS:

@@ -8,9 +8,10 @@
       </plugin>
     </extension>
 
-A body joins the instance by `<plugin instance="sea"/>`; where none does, all bodies that move are in
-it. The keys are those of `settings.config.KEYS`. MuJoCo calls only compiled functions, from any thread;
-Python is asked once for each mjData, when it is made, and when data are stepped with another model.
+A body joins the instance by `<plugin instance="sea"/>`; where none does, all bodies that move are
+in it. The keys are those of `settings.config.KEYS`. MuJoCo calls only compiled functions, from any
+thread; Python is asked once for each mjData, when it is made, and when data are stepped with
+another model.
 """
 
 import warnings
@@ -42,9 +43,11 @@ def add_water(
     Args:
         spec: the model. All its bodies that move are in the water, but those that joined another
             instance.
-        water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all options.
+        water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all
+            options.
         instance: name of the plugin's instance in the model.
-        options: any of the other fields of `Settings`: method, pressure, damping, added_mass, selection.
+        options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
+            selection.
 
     Raises:
         ModelError: the model has an instance of that name.

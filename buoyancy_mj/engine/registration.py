@@ -1,4 +1,4 @@
-"""The registration of the plugin with MuJoCo: its struct, its compiled functions, and their question."""
+"""The plugin registered with MuJoCo: its struct, its compiled functions, and what they ask."""
 
 import ctypes
 import functools
@@ -17,10 +17,10 @@ from buoyancy_mj.kernels.passes import ALIVE, MODEL, WATER
 from buoyancy_mj.settings.config import KEYS
 
 _HOOKS = (
-    *("nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance"),
-    *("visualize", "actuator_act_dot", "sdf_distance", "sdf_gradient", "sdf_staticdistance"),
-    *("sdf_attribute", "sdf_aabb"),
-)
+    "nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance", "visualize",
+    "actuator_act_dot",
+    "sdf_distance", "sdf_gradient", "sdf_staticdistance", "sdf_attribute", "sdf_aabb",
+)  # fmt: skip
 """Functions of MuJoCo's mjpPlugin, in their order."""
 _INT = ctypes.c_int
 _WORD = ctypes.c_int64
@@ -38,6 +38,7 @@ def register() -> None:
 
 def _resolve(model: int, data: int, instance: int) -> None:
     """Put the address of a record for a model into the engine's data."""
+    # data made while a water is made, to look at the poses of its hulls
     if is_making_water():
         return
     with LOCK:
@@ -66,7 +67,10 @@ class _Plugin(ctypes.Structure):
 
 
 class _Engine:
-    """The plugin as the engine knows it, never freed: data may be deleted after the interpreter has gone."""
+    """The plugin as the engine knows it.
+
+    It is never freed, since data may be deleted after the interpreter has gone.
+    """
 
     def __init__(self) -> None:
         compiled.require_known_layout()

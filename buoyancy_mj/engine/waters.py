@@ -1,4 +1,4 @@
-"""The waters of models that bring their own, one for all models that agree in what it is made of."""
+"""Waters of models that bring their own; models that agree in what it is made of share one."""
 
 import contextlib
 import threading

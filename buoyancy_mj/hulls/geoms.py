@@ -85,7 +85,7 @@ def build_hulls(
 
 
 def diagnose_geom(model: mujoco.MjModel, geom: int) -> Diagnosis | None:
-    """Diagnose the mesh of a geom, once for each mesh; None for a primitive, which has no faults."""
+    """Diagnose the mesh of a geom, once for each mesh; None for a geom of another type."""
     if model.geom_type[geom] != _MESH:
         return None
     arrays = read_geom_mesh(model, geom)

@@ -18,7 +18,8 @@ def read_gravity(model: mujoco.MjModel, *, required: bool = False) -> float:
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
         if required:
             raise ModelError(
-                "gravity is disabled, and nothing floats without it: remove <flag gravity='disable'/>"
+                "gravity is disabled, and nothing floats without it: "
+                "remove <flag gravity='disable'/>"
             )
         return 0.0
     x, y, z = model.opt.gravity

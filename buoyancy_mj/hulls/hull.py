@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ class Hull:
     body: int
     """Index of the body it moves with: a body without a joint is part of its parent."""
     name: str
-    """Name of the geom, or 'BODY/TYPE INDEX' for one without; those of several with ' + ' between."""
+    """Name of the geom, or 'BODY/TYPE INDEX' for one without; those of several joined by ' + '."""
     mesh: TriMesh
     """Its mesh, in the geom's frame."""
     body_from_geom: NDArray[np.float64]
@@ -30,6 +31,10 @@ class Hull:
     geoms: tuple[int, ...] = ()
     """Indices of all geoms it is made of."""
 
+    def __post_init__(self) -> None:
+        self.body_from_geom.setflags(write=False)
+        self.position.setflags(write=False)
+
     @property
     def displaced_volume(self) -> float:
         """Volume of water that it displaces fully submerged [m^3]."""
@@ -39,3 +44,19 @@ class Hull:
     def mesh_in_body(self) -> TriMesh:
         """The mesh in the frame of the body."""
         return self.mesh.transformed(self.body_from_geom, self.position)
+
+
+def group_by_body(hulls: Sequence[Hull]) -> dict[int, list[Hull]]:
+    """The hulls of each body, by the index of the body, in the order of the model."""
+    bodies = sorted({hull.body for hull in hulls})
+    return {body: [hull for hull in hulls if hull.body == body] for body in bodies}
+
+
+def combine_volumes(hulls: Sequence[Hull]) -> tuple[float, NDArray[np.float64]]:
+    """The volume [m^3] that hulls of one body displace fully submerged, and its centroid (3,) [m].
+
+    The centroid is in the frame of the body.
+    """
+    volumes = np.array([hull.displaced_volume for hull in hulls])
+    volume = float(volumes.sum())
+    return volume, volumes @ [hull.mesh_in_body.centroid for hull in hulls] / volume

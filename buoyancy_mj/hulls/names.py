@@ -1,4 +1,4 @@
-"""Names of geoms and bodies for messages and patterns, also of those that the model leaves unnamed."""
+"""Names of geoms and bodies, for messages and patterns; unnamed ones get a name too."""
 
 import mujoco
 

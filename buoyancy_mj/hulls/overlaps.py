@@ -1,4 +1,4 @@
-"""Hulls of one body that overlap, joined by boolean union, so that no volume displaces water twice."""
+"""Hulls of one body that overlap are joined, so that no volume displaces water twice."""
 
 import dataclasses
 import functools
@@ -10,12 +10,13 @@ import numpy as np
 import trimesh
 
 from buoyancy_mj.errors import BuoyancyWarning
-from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.hull import Hull, group_by_body
 from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.meshes.overlaps import find_close_pairs
 from buoyancy_mj.meshes.surface import to_manifold
 
 OVERLAP = 1e-6
-"""Common volume of two geoms, as a part of the smaller one, above which they are joined; less is rounding."""
+"""Common volume of two geoms, as a part of the smaller one, above which they are joined."""
 
 _SolidOf = Callable[[Hull], manifold3d.Manifold]
 
@@ -23,12 +24,11 @@ _SolidOf = Callable[[Hull], manifold3d.Manifold]
 def join_overlapping(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
     """The hulls, those of one body that overlap joined into one, in the order of the model's geoms.
 
-    Where hulls of different fill overlap, the common volume belongs to the fuller one. Where more than
-    two faces meet at an edge of a hull, it is not joined, and a `BuoyancyWarning` says so.
+    Where hulls of different fill overlap, the common volume belongs to the fuller one. Where more
+    than two faces meet at an edge of a hull, it is not joined, and a `BuoyancyWarning` says so.
     """
     joined: list[Hull] = []
-    for body in sorted({hull.body for hull in hulls}):
-        of_body = [hull for hull in hulls if hull.body == body]
+    for of_body in group_by_body(hulls).values():
         solid_of = functools.cache(_build_solid)
 
         # groups of hulls that overlap, directly or through others
@@ -52,7 +52,7 @@ def _overlap(one: Hull, two: Hull, solid_of: _SolidOf) -> bool:
 
 
 def _build_solid(hull: Hull) -> manifold3d.Manifold:
-    """A hull in the frame of its body, for booleans; empty, with a warning, if it is no manifold."""
+    """A hull in the frame of its body, for booleans; empty, with a warning, if no manifold."""
     solid = to_manifold(*hull.mesh_in_body.compact)
     if solid is None:
         warnings.warn(

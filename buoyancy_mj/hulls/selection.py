@@ -15,17 +15,17 @@ CUSTOM_TEXTS: Mapping[str, str] = {
 class Selection:
     """Which geoms of a model displace water, and as what.
 
-    A pattern is a name glob such as 'hull*', or 'group:2'. Each field takes one text or several. None
-    leaves the choice to the model: to its `<custom>` texts 'buoyancy_geoms', 'buoyancy_hull' and
-    'buoyancy_fill', or to the defaults.
+    A pattern is a name glob such as 'hull*', or 'group:2'. Each field takes one text or several.
+    None leaves the choice to the model: to its `<custom>` texts 'buoyancy_geoms', 'buoyancy_hull'
+    and 'buoyancy_fill', or to the defaults.
 
     Example:
         `Selection(geoms=["hull*", "pod"], fill="frame=0.1")`
     """
 
     geoms: str | Sequence[str] | None = None
-    """Which geoms displace water: patterns. By default the collision geoms of each body, or its visual
-    ones if it has none."""
+    """Which geoms displace water: patterns. By default the collision geoms of each body, or its
+    visual ones if it has none."""
     hull: str | Sequence[str] | None = None
     """Which of them displace as their convex hull: 'PATTERN=convex', or 'convex' for all."""
     fill: str | Sequence[str] | None = None

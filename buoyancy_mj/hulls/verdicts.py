@@ -36,9 +36,10 @@ def judge_geoms(
 ) -> tuple[Verdict, ...]:
     """Judge every geom of a model: does it displace water, and why.
 
-    The collision geoms of each moving body (contype or conaffinity not zero) displace water if it has
-    any, otherwise its visual ones. `selection.geoms`, or the model's text 'buoyancy_geoms', chooses
-    otherwise. Planes, height fields, signed distance fields and geoms that cannot move never displace.
+    The collision geoms of each moving body (contype or conaffinity not zero) displace water if it
+    has any, otherwise its visual ones. `selection.geoms`, or the model's text 'buoyancy_geoms',
+    chooses otherwise. Planes, height fields, signed distance fields and geoms that cannot move
+    never displace.
 
     Args:
         model: any model.
@@ -68,8 +69,9 @@ def judge_geoms(
         reason_left_out = "not among those chosen"
     if not reasons:
         raise ModelError(
-            "no geom of this model displaces water: it has no mesh, box, sphere, ellipsoid, capsule "
-            "or cylinder on a body that can move; give the vehicle such a geom, and its body a joint"
+            "no geom of this model displaces water: it has no mesh, box, sphere, ellipsoid, "
+            "capsule or cylinder on a body that can move; "
+            "give the vehicle such a geom, and its body a joint"
         )
 
     return tuple(

@@ -1,4 +1,4 @@
-"""`Damping`: how the water slows a body down, as the user chooses it."""
+"""`Damping`: the user's choice of how the water slows bodies down."""
 
 import dataclasses
 import math
@@ -23,14 +23,16 @@ def _check_numbers(options: Any) -> None:
 class Silhouette:
     """Linear and quadratic damping of a body, estimated once from the silhouettes of its hulls.
 
-    Along each axis of the body the force is 1/2 rho C A |u| u. A is the silhouette of all its hulls.
-    C is `coefficient` times the mean square cosine between the hulls' normals and the axis, weighed
-    by what each face shows. That makes 1.05 for a cube face-on, 0.53 for a sphere and 0.70 for a
-    cylinder across the flow; Hoerner, Fluid-Dynamic Drag (1965), ch. 3, measured 1.05, 0.47 and,
-    with a length of one to five diameters, 0.64 to 0.74 (table 7.3 of White, Fluid Mechanics, 8th ed.).
+    Along each axis of the body the force is 1/2 rho C A |u| u. A is the silhouette of all its
+    hulls. C is `coefficient` times the mean square cosine between the hulls' normals and the axis,
+    weighted by the projected area of each face. C is 1.05 for a cube face-on, 0.53 for a sphere
+    and 0.70 for a cylinder across the flow. Hoerner, Fluid-Dynamic Drag (1965), ch. 3, measured
+    1.05, 0.47 and, with a length of one to five diameters, 0.64 to 0.74 (table 7.3 of White, Fluid
+    Mechanics, 8th ed.).
 
-    Turning about an axis through the centroid of its volume, each strip of the two other silhouettes
-    meets the flow at its own speed (cross-flow principle): the torque is 1/2 rho C int |r|^3 dA |w| w.
+    When the body turns about an axis through the centroid of its volume, each strip of the two
+    other silhouettes meets the flow at its own speed (cross-flow principle). The torque is
+    1/2 rho C int |r|^3 dA |w| w.
 
     The linear part equals the quadratic one at a low speed, `linear_froude` sqrt(g L), with L the
     longest side of the body. In the measured coefficients of the BlueROV2 Heavy (von Benzon et al.
@@ -52,10 +54,11 @@ class Silhouette:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Panels:
-    """Pressure drag and skin friction of each wet triangle, in each step: for hulls with a flow along them.
+    """Pressure drag and skin friction of each wet triangle in each step, for slender hulls.
 
-    Faces that lead have the coefficient 2/3 `coefficient`, those that trail 1/3, so that a plate across
-    the flow has all of it, and a smooth hull along the flow little; see `kernels.panels.add_panels`.
+    Leading faces have the coefficient 2/3 `coefficient`, trailing faces 1/3. So a plate across the
+    flow has the whole `coefficient`, and a smooth hull along the flow little; the formulas stand in
+    `kernels.panels.add_panels`.
 
     Raises:
         ModelError: a negative or infinite value, or no viscosity.
@@ -70,7 +73,8 @@ class Panels:
         _check_numbers(self)
         if self.viscosity == 0.0:
             raise ModelError(
-                "damping viscosity is 0; panels need one, 1.19e-6 for sea water at 15 degrees Celsius"
+                "damping viscosity is 0; panels need one, "
+                "1.19e-6 for sea water at 15 degrees Celsius"
             )
 
 
@@ -84,26 +88,28 @@ VISCOUS: Mapping[str, type[Silhouette] | type[Panels] | None] = {
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Damping:
-    """What slows a body down in the water: viscous drag, and the waves that it makes.
+    """How the water slows a body down: by viscous drag, and by the waves that the body makes.
 
-    `viscous` is an estimate for bodies whose damping the model does not state. A model states it in
-    `<custom>`, as numerics 'linear_damping:BODY' and 'quadratic_damping:BODY': force and torque per
-    velocity and per velocity squared along the body's axes. Six numbers are diagonals, at the centroid
-    of its wet volume; 36 are matrices row by row, at its origin, D v and (D_n |v|) v (Fossen 2021,
-    sec. 6.4).
+    `viscous` estimates the drag of bodies whose damping the model does not give. A model gives it
+    in `<custom>`, as numerics 'linear_damping:BODY' and 'quadratic_damping:BODY': force and torque
+    per velocity and per velocity squared along the body's axes. Six numbers are diagonals, at the
+    centroid of the body's wet volume. 36 numbers are matrices row by row, at the body's origin:
+    D v and (D_n |v|) v (Fossen 2021, sec. 6.4).
 
-    The numeric 'radiation_damping:BODY' of three numbers is what the waves that the body makes take from
-    heave, roll and pitch: force and torques per velocity, scaled with its waterplane over its silhouette
-    from above. It is a load of its own.
+    A model gives radiation damping as the numeric 'radiation_damping:BODY', three numbers for
+    heave, roll and pitch: the force and torques per velocity of the waves that the body makes. They
+    are scaled with its waterplane over its silhouette from above. Radiation is a load of its own.
 
     Raises:
         ModelError: a value of another kind.
     """
 
     viscous: Silhouette | Panels | None = Silhouette()
-    """How drag is estimated; None for no viscous drag at all, not even what the model states."""
+    """How drag is estimated; None for no viscous drag at all, not even the drag that the model
+    gives."""
     radiation: bool = True
-    """Whether bodies lose what the waves that they make take, where the model states it."""
+    """Whether the waves that bodies make slow them down, where the model gives radiation
+    damping."""
 
     def __post_init__(self) -> None:
         if not isinstance(self.viscous, Silhouette | Panels | None):

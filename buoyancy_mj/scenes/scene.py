@@ -11,9 +11,10 @@ import mujoco
 
 from buoyancy_mj.errors import SceneError, choices
 from buoyancy_mj.loads.coefficients import CoefficientsFile
-from buoyancy_mj.settings.config import SELECTION, parse_value
+from buoyancy_mj.settings.config import SELECTION
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.tables import build
+from buoyancy_mj.settings.texts import parse_value
 from buoyancy_mj.settings.toml import (
     damping_from_table,
     method_from_table,

@@ -1,4 +1,4 @@
-"""`Settings`: all options of the water beside the model, with their defaults."""
+"""`Settings`: all options of the water, with their defaults."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -21,37 +21,45 @@ PRESSURES = ("archimedes", "hydrostatic", "froude-krylov")
 class Settings:
     """The water of a model, and every option of how it acts.
 
-    `Buoyancy` and `add_water` take these as keyword arguments; a scene has them beside its vehicle; the
-    plugin keeps them as texts.
+    `Buoyancy` and `add_water` take these fields as keyword arguments, or a `Settings` in the place
+    of the water. A scene has them beside its vehicle, and the plugin keeps them as texts.
 
     Raises:
-        MethodError: an unknown method or pressure; or a pressure, or damping, that needs another method.
+        MethodError: an unknown method or pressure; or a pressure, or damping, that needs another
+            method.
+
+    Example:
+        `Settings(water=Water(density=1025.0), pressure="froude-krylov")`
     """
 
     water: Water = Water()
     """The sea."""
     method: Method = Exact()
-    """How the submersion is found: `Exact`, or the source paper's `ConvexHull` or `Sections`; or the name 'exact',
-    'convex_hull' or 'sections'."""
+    """The method that finds the submerged part of hulls: `Exact`, or the source paper's
+    `ConvexHull` or `Sections`; or the name 'exact', 'convex_hull' or 'sections'."""
     pressure: str = "archimedes"
-    """The model of wave pressure. 'archimedes' is rho g V upward, as in the source paper. 'hydrostatic' is the
-    pressure of the depth under the surface, which pushes along the slope too. 'froude-krylov' is the pressure of
-    linear waves, which fades with depth, see `kernels.waves.head`."""
+    """The model of wave pressure. 'archimedes' is rho g V upward, as in the source paper.
+    'hydrostatic' is the pressure of the depth under the surface, which pushes along the slope too.
+    'froude-krylov' is the pressure of linear waves, which fades with depth, see
+    `kernels.waves.head`."""
     damping: Damping | None = Damping()
     """How the water slows bodies down; None for no damping."""
     added_mass: str | Mapping[str, ArrayLike] | None = "model"
-    """Where added mass comes from. 'model' takes what the model's `<custom>` states, numerics 'added_mass:BODY' with
-    6 or 36 numbers. 'estimate' adds an estimate where the model states none. 'none' leaves it out. Matrices (6, 6)
-    or diagonals (6,) by the name of the body replace all that."""
+    """Where added mass comes from. 'model' takes the numerics 'added_mass:BODY' of 6 or 36 numbers
+    from the model's `<custom>`. 'estimate' adds an estimate for bodies without. 'none' leaves it
+    out. Matrices (6, 6) or diagonals (6,) by the name of the body replace all these."""
     selection: Selection = Selection()
     """Which geoms displace water, and as what."""
 
     def __post_init__(self) -> None:
+        # names
         object.__setattr__(self, "method", parse_method(self.method))
         if self.pressure not in PRESSURES:
             raise MethodError(
                 f"pressure is '{self.pressure}'; {choices(str(self.pressure), PRESSURES)}"
             )
+
+        # the other methods know neither pressure nor triangles
         if isinstance(self.method, Exact):
             return
         if self.pressure != "archimedes":
@@ -61,12 +69,13 @@ class Settings:
             )
         if self.damping is not None and isinstance(self.damping.viscous, Panels):
             raise MethodError(
-                f"drag by panels needs the method 'exact', not '{self.method.name}', which knows no triangles"
+                f"drag by panels needs the method 'exact', not '{self.method.name}', "
+                "which knows no triangles"
             )
 
 
 class Options(TypedDict, total=False):
-    """The fields of `Settings` beside the water, for the types of keyword arguments."""
+    """The fields of `Settings` but for the water, as the types of keyword arguments."""
 
     method: str | Method
     pressure: str
@@ -76,7 +85,11 @@ class Options(TypedDict, total=False):
 
 
 def combine_settings(water: Water | Settings | None, options: Options) -> Settings:
-    """The settings of a water, fresh and still if None, or other settings, with options over them."""
+    """The settings of a water, fresh and still if None; or settings with options laid over them.
+
+    Raises:
+        MethodError: the options do not fit together.
+    """
     if "method" in options:
         options["method"] = parse_method(options["method"])
     if isinstance(water, Settings):

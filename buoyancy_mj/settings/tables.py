@@ -1,81 +1,109 @@
-"""Tables of plain values, as TOML has them, into frozen dataclasses: unknown keys and wrong types are told."""
+"""Tables of plain values, as TOML has them, become frozen dataclasses; a wrong one is refused."""
 
 import dataclasses
 import math
 import types
 import typing
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
 from buoyancy_mj.errors import BuoyancyError, SceneError, choices
 
 T = TypeVar("T")
 
+_PLAIN_TYPES = {
+    float: "a number",
+    int: "a whole number",
+    bool: "true or false",
+    str: "a text in quotes",
+}
+"""Types that TOML has too, in words."""
 
-def build(cls: type[T], table: Mapping[str, Any], where: str, **given: Any) -> T:
-    """A `cls` from `table`; `given` fields are set by the caller and are no keys of the table.
+
+def build(cls: type[T], table: Mapping[str, Any], where: str, **values: Any) -> T:
+    """Build a dataclass from a table.
+
+    Args:
+        cls: the dataclass.
+        table: its fields as plain values, by their names.
+        where: how messages call the table.
+        values: fields that the caller sets, which are no keys of the table.
 
     Raises:
         SceneError: a key that `cls` lacks, a value of the wrong type, a missing one, or one that
-            `cls` itself refuses; `where` names the table.
+            `cls` itself refuses.
     """
     hints = typing.get_type_hints(cls)
-    fields = {field.name: field for field in dataclasses.fields(cls) if field.name not in given}  # type: ignore[arg-type]
+    fields = {field.name: field for field in dataclasses.fields(cls) if field.name not in values}  # type: ignore[arg-type]
+
+    # the keys
     for key in table:
         if key not in fields:
             raise SceneError(f"{where}: unknown key '{key}'; {choices(key, fields)}")
     for name, field in fields.items():
-        if (
-            name not in table
-            and field.default is dataclasses.MISSING
-            and field.default_factory is dataclasses.MISSING
-        ):
-            raise SceneError(f"{where}: '{name}' is missing; needed is {_described(hints[name])}")
-    values = {key: convert(value, hints[key], f"{where}: {key}") for key, value in table.items()}
+        if name not in table and not _has_default(field):
+            raise SceneError(f"{where}: '{name}' is missing; needed is {_describe(hints[name])}")
+
+    # the values
+    converted = {key: convert(table[key], hints[key], f"{where}: {key}") for key in table}
     try:
-        return cls(**values, **given)
+        return cls(**converted, **values)
     except BuoyancyError as error:
         raise SceneError(f"{where}: {error}") from error
 
 
 def convert(value: Any, hint: Any, where: str) -> Any:
-    """`value` as `hint` wants it: bool, int, float, str, a tuple of floats or of strings, or one of those or None."""
-    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
-        options = [option for option in typing.get_args(hint) if option is not type(None)]
-        return convert(value, options[0], where)
-    if hint is float and isinstance(value, int | float) and not isinstance(value, bool):
+    """Convert a plain value to a type.
+
+    Args:
+        value: any value.
+        hint: the type: bool, int, float, str or a tuple of these; of a union, its first type
+            counts.
+        where: how messages call the value.
+
+    Raises:
+        SceneError: the value is of another type, or nan.
+    """
+    kind = _first_type(hint)
+    is_number = isinstance(value, int | float) and not isinstance(value, bool)
+    if kind is float and is_number:
         if math.isnan(value):
             raise SceneError(f"{where} is nan; needed is a number")
         return float(value)
-    if hint is bool and isinstance(value, bool):
+    if kind is int and is_number and isinstance(value, int):
         return value
-    if hint is int and isinstance(value, int) and not isinstance(value, bool):
+    if kind in (bool, str) and isinstance(value, kind):
         return value
-    if hint is str and isinstance(value, str):
-        return value
-    if typing.get_origin(hint) is tuple and isinstance(value, list | tuple):
-        items = typing.get_args(hint)
+    if typing.get_origin(kind) is tuple and isinstance(value, list | tuple):
+        items = typing.get_args(kind)
         if items[-1] is Ellipsis:
-            return tuple(convert(item, items[0], where) for item in value)
+            items = (items[0],) * len(value)
         if len(items) == len(value):
-            return tuple(
-                convert(item, kind, where) for item, kind in zip(value, items, strict=True)
-            )
-    raise SceneError(f"{where} is {value!r}; needed is {_described(hint)}")
+            return _convert_items(value, items, where)
+    raise SceneError(f"{where} is {value!r}; needed is {_describe(kind)}")
 
 
-def _described(hint: Any) -> str:
+def _convert_items(values: Sequence[Any], hints: Sequence[Any], where: str) -> tuple[Any, ...]:
+    """Each item of a list, converted to its type."""
+    return tuple(convert(value, hint, where) for value, hint in zip(values, hints, strict=True))
+
+
+def _has_default(field: dataclasses.Field[Any]) -> bool:
+    missing = dataclasses.MISSING
+    return field.default is not missing or field.default_factory is not missing
+
+
+def _first_type(hint: Any) -> Any:
+    """The first type of a union that is not None, or the type itself."""
+    if isinstance(hint, types.UnionType) or typing.get_origin(hint) is typing.Union:
+        return next(option for option in typing.get_args(hint) if option is not type(None))
+    return hint
+
+
+def _describe(hint: Any) -> str:
     """A type in words."""
-    if isinstance(hint, types.UnionType):
-        return _described(
-            next(option for option in typing.get_args(hint) if option is not type(None))
-        )
-    if typing.get_origin(hint) is tuple:
-        items = typing.get_args(hint)
+    kind = _first_type(hint)
+    if typing.get_origin(kind) is tuple:
+        items = typing.get_args(kind)
         return "a list of words" if items[-1] is Ellipsis else f"a list of {len(items)} numbers"
-    return {
-        float: "a number",
-        int: "a whole number",
-        bool: "true or false",
-        str: "a text in quotes",
-    }.get(hint, f"a table ({getattr(hint, '__name__', hint)})")
+    return _PLAIN_TYPES.get(kind, f"a table ({getattr(kind, '__name__', kind)})")

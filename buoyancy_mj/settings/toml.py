@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from buoyancy_mj.errors import SceneError, WaterError, choices
 from buoyancy_mj.hulls.selection import Selection
@@ -14,59 +14,66 @@ from buoyancy_mj.sea.waves import LevelOscillation, RegularWave, Wave
 from buoyancy_mj.settings.tables import build, convert
 from buoyancy_mj.submersion.methods import METHODS, Method
 
+K = TypeVar("K")
+
 WAVES: Mapping[str, type[Wave]] = {
     "regular": RegularWave,
     "jonswap": JonswapSea,
     "pierson-moskowitz": PiersonMoskowitzSea,
     "level": LevelOscillation,
 }
-"""Kinds of waves."""
+"""Classes of waves by their kind."""
 CURRENTS: Mapping[str, type[CurrentProfile] | type[CurrentSeries]] = {
     "profile": CurrentProfile,
     "series": CurrentSeries,
 }
-"""Kinds of currents that change by depth or by time."""
+"""Classes of currents that depend on depth or time, by their kind."""
 
 
 def water_from_table(value: Any, where: str, folder: Path = Path()) -> Water:
-    """The sea that a table describes; `where` names it in errors, and paths in it start from `folder`.
+    """The sea that a table describes.
+
+    Args:
+        value: the table.
+        where: how messages call it.
+        folder: where relative paths in it start.
 
     Raises:
-        SceneError: an unknown key or kind of wave, or a value that makes no sense. So do the others here.
+        SceneError: an unknown key or kind, or a value that makes no sense; so in all functions
+            here.
     """
-    plain = dict(table_of(value, where))
-    entries = plain.pop("waves", [])
-    if not isinstance(entries, list):
-        raise SceneError(
-            f"{where}: waves is {entries!r}; needed is a list of tables [[water.waves]]"
-        )
-    waves: list[Wave] = []
-    for i, entry in enumerate(entries):
-        place = f"{where}.waves.{i}"
-        wave = dict(table_of(entry, place))
-        kind = wave.pop("kind", "regular")
-        if not isinstance(kind, str) or kind not in WAVES:
-            raise SceneError(f"{place}: unknown kind {kind!r}; {choices(str(kind), WAVES)}")
-        waves.append(build(WAVES[kind], wave, place))
-    given: dict[str, Any] = {"waves": tuple(waves)}
-    if isinstance(plain.get("current"), dict):
-        given["current"] = current_from_table(plain.pop("current"), f"{where}.current", folder)
-    return build(Water, plain, where, **given)
+    table = dict(table_of(value, where))
+    waves = table.pop("waves", [])
+    if not isinstance(waves, list):
+        raise SceneError(f"{where}: waves is {waves!r}; needed is a list of tables [[water.waves]]")
+    fields: dict[str, Any] = {
+        "waves": tuple(wave_from_table(wave, f"{where}.waves.{i}") for i, wave in enumerate(waves))
+    }
+    if isinstance(table.get("current"), dict):
+        fields["current"] = current_from_table(table.pop("current"), f"{where}.current", folder)
+    return build(Water, table, where, **fields)
+
+
+def wave_from_table(value: Any, where: str) -> Wave:
+    """A wave from a table of its `kind`, 'regular' by default, and its fields."""
+    table = dict(table_of(value, where))
+    return build(_find_kind(table.pop("kind", "regular"), WAVES, where), table, where)
 
 
 def current_from_table(
     value: Mapping[str, Any], where: str, folder: Path = Path()
 ) -> CurrentProfile | CurrentSeries:
-    """A current by depth or by time; a series may stand in a `file`, see `CurrentSeries.read`."""
-    plain = dict(value)
-    kind = plain.pop("kind", None)
+    """A current by depth or by time; `CurrentSeries.read` reads a series from its `file`."""
+    table = dict(value)
+    kind = table.pop("kind", None)
     if not isinstance(kind, str) or kind not in CURRENTS:
         raise SceneError(
-            f"{where}: kind is {kind!r}; {choices(str(kind), CURRENTS)}, or a list of 3 numbers instead"
+            f"{where}: kind is {kind!r}; {choices(str(kind), CURRENTS)}, "
+            "or a list of 3 numbers instead"
         )
-    if kind == "series" and "file" in plain:
-        file = plain.pop("file")
-        if plain or not isinstance(file, str):
+    if kind == "series" and "file" in table:
+        file = table.pop("file")
+        if table or not isinstance(file, str):
             raise SceneError(
                 f"{where}: a series has a file, a text, and nothing else, or times and velocities"
             )
@@ -74,39 +81,33 @@ def current_from_table(
             return CurrentSeries.read(folder / file)
         except WaterError as error:
             raise SceneError(f"{where}: {error}") from error
-    return build(CURRENTS[kind], plain, where)
+    return build(CURRENTS[kind], table, where)
 
 
 def method_from_table(value: Any, where: str) -> Method:
-    """A method by its name, or a table of its `kind` and its options."""
-    plain = {"kind": value} if isinstance(value, str) else dict(table_of(value, where))
-    if "kind" not in plain:
+    """A method from its name, or from a table of its `kind` and its options."""
+    table = {"kind": value} if isinstance(value, str) else dict(table_of(value, where))
+    if "kind" not in table:
         raise SceneError(f"{where}: 'kind' is missing; needed is one of {', '.join(METHODS)}")
-    kind = plain.pop("kind")
-    if not isinstance(kind, str) or kind not in METHODS:
-        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), METHODS)}")
-    return build(METHODS[kind], plain, where)
+    return build(_find_kind(table.pop("kind"), METHODS, where), table, where)
 
 
 def damping_from_table(value: Any, where: str) -> Damping | None:
-    """Damping by the kind of viscous drag, or a table of its `kind`, the kind's options and `radiation`."""
+    """Damping from the kind of viscous drag, or a table of `kind`, its options and `radiation`."""
     if isinstance(value, bool):
         return Damping() if value else None
-    plain = {"kind": value} if isinstance(value, str) else dict(table_of(value, where))
-    kind = plain.pop("kind", "silhouette")
-    if not isinstance(kind, str) or kind not in VISCOUS:
-        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), VISCOUS)}")
-    radiation = convert(plain.pop("radiation", True), bool, f"{where}: radiation")
-    viscous = VISCOUS[kind]
-    if viscous is None and plain:
-        raise SceneError(f"{where}: unknown key '{next(iter(plain))}'; possible: kind, radiation")
-    return Damping(
-        viscous=None if viscous is None else build(viscous, plain, where), radiation=radiation
-    )
+    table = {"kind": value} if isinstance(value, str) else dict(table_of(value, where))
+    viscous = _find_kind(table.pop("kind", "silhouette"), VISCOUS, where)
+    radiation = convert(table.pop("radiation", True), bool, f"{where}: radiation")
+    if viscous is not None:
+        return Damping(viscous=build(viscous, table, where), radiation=radiation)
+    if table:
+        raise SceneError(f"{where}: unknown key '{next(iter(table))}'; possible: kind, radiation")
+    return Damping(viscous=None, radiation=radiation)
 
 
 def selection_from_table(table: Mapping[str, Any], where: str) -> Selection:
-    """The selection that the lists `geoms`, `hull` and `fill` of a table make."""
+    """The selection of the lists `geoms`, `hull` and `fill` of a table."""
     return Selection(
         **{key: convert(value, tuple[str, ...], f"{where}: {key}") for key, value in table.items()}
     )
@@ -117,3 +118,10 @@ def table_of(value: Any, where: str) -> Mapping[str, Any]:
     if not isinstance(value, dict):
         raise SceneError(f"{where} is {value!r}; needed is a table")
     return value
+
+
+def _find_kind(kind: Any, kinds: Mapping[str, K], where: str) -> K:
+    """The class of a kind."""
+    if not isinstance(kind, str) or kind not in kinds:
+        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), kinds)}")
+    return kinds[kind]

@@ -1,0 +1,71 @@
+"""Values and tables as short texts without blanks inside a value, and back."""
+
+import dataclasses
+import math
+import tomllib
+from collections.abc import Sequence
+from typing import Any
+
+from buoyancy_mj.errors import SceneError
+
+
+def parse_value(text: str) -> Any:
+    """A value of TOML, or the text itself as a bare word."""
+    try:
+        return tomllib.loads(f"value = {text}")["value"]
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+
+
+def format_value(value: bool | str | float | tuple[Any, ...]) -> str:
+    """A value as a text without blanks, from which `parse_value` makes the same value again."""
+    match value:
+        case bool():
+            return str(value).lower()
+        case str():
+            return value
+        case tuple():
+            return f"[{','.join(map(format_value, value))}]"
+        case int():
+            return str(value)
+    return "inf" if math.isinf(value) else repr(float(value))
+
+
+def parse_table(text: str, where: str) -> dict[str, Any]:
+    """The table that 'kind key=value key=value' describes; the kind may be missing.
+
+    Raises:
+        SceneError: a word after the kind is no key=value pair.
+    """
+    kind, *words = text.split()
+    if "=" in kind:
+        kind, words = "", [kind, *words]
+    table: dict[str, Any] = {"kind": kind} if kind else {}
+    for word in words:
+        key, equals, value = word.partition("=")
+        if not equals:
+            raise SceneError(
+                f"{where} is '{text.strip()}'; after the kind it must be key=value pairs "
+                f"between blanks, not '{word}'"
+            )
+        table[key] = parse_value(value)
+    return table
+
+
+def format_table(
+    kind: str, value: Any, *, leave_out: Sequence[str] = (), defaults: bool = False
+) -> str:
+    """A dataclass as 'kind key=value key=value', which `parse_table` reads.
+
+    Args:
+        kind: the first word.
+        value: the dataclass.
+        leave_out: fields that are not written.
+        defaults: whether fields at their defaults are written too.
+    """
+    words = [kind]
+    for field in dataclasses.fields(value):
+        item = getattr(value, field.name)
+        if field.name not in leave_out and (defaults or item != field.default):
+            words.append(f"{field.name}={format_value(item)}")
+    return " ".join(words)
