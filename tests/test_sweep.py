@@ -15,7 +15,8 @@ from typer.testing import CliRunner
 from buoyancy_mj import SceneError, Simulation, SweepError, read_scene
 from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog, sweep
-from buoyancy_mj.scenes.sweep import Over, Sweep, draws, grid, parse_over
+from buoyancy_mj.scenes.ranges import FieldRange, draws, grid, parse_range
+from buoyancy_mj.scenes.sweep import Sweep
 
 QUICK = ("duration=0.3",)
 
@@ -23,7 +24,7 @@ QUICK = ("duration=0.3",)
 def plan(
     tmp_path, *over, scene="hourglass_drop_waves", name="out.csv", settings=QUICK, values=None
 ):
-    fields = [parse_over(text) for text in over]
+    fields = [parse_range(text) for text in over]
     return Sweep(
         catalog.scenes()[scene],
         settings,
@@ -107,7 +108,7 @@ def test_one_thread_and_two_give_the_same_rows(tmp_path):
 
 
 def test_draws_lie_between_their_ends_and_come_again_with_their_seed():
-    over = [Over("a", 1.0, 2.0, 0), Over("b", -3.0, 5.0, 0)]
+    over = [FieldRange("a", 1.0, 2.0, 0), FieldRange("b", -3.0, 5.0, 0)]
     values = np.array(draws(over, 500, 7))
     assert (values >= [1.0, -3.0]).all()
     assert (values <= [2.0, 5.0]).all()
@@ -117,7 +118,7 @@ def test_draws_lie_between_their_ends_and_come_again_with_their_seed():
 
 
 def test_a_grid_has_all_combinations_the_last_field_fastest():
-    assert grid([Over("a", 0.0, 1.0, 2), Over("b", 5.0, 7.0, 3)]) == [
+    assert grid([FieldRange("a", 0.0, 1.0, 2), FieldRange("b", 5.0, 7.0, 3)]) == [
         (0.0, 5.0), (0.0, 6.0), (0.0, 7.0), (1.0, 5.0), (1.0, 6.0), (1.0, 7.0)
     ]  # fmt: skip
 
@@ -127,7 +128,7 @@ def test_a_grid_has_all_combinations_the_last_field_fastest():
 
 @pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
 def test_what_is_there_is_not_run_again(name, tmp_path, monkeypatch):
-    monkeypatch.setattr(sweep, "AT_ONCE", 2)
+    monkeypatch.setattr(sweep, "BATCH_SIZE", 2)
     wanted = plan(tmp_path, "start.position.2=0.3:0.9:6", name=name)
     whole = list(plan(tmp_path, "start.position.2=0.3:0.9:6", name="whole.csv").run())
     made = []
@@ -181,7 +182,7 @@ def test_a_sweep_that_is_killed_goes_on(tmp_path):
 
 
 def test_more_draws_of_the_same_seed_go_on_from_fewer(tmp_path):
-    over = [Over("mass", 15.0, 25.0, 0)]
+    over = [FieldRange("mass", 15.0, 25.0, 0)]
     few, more = (plan(tmp_path, "mass=15:25", values=draws(over, count, 3)) for count in (2, 4))
     first = list(few.run())
     assert list(more.run())[:2] == first
@@ -231,14 +232,14 @@ def test_what_the_engine_refuses_is_a_reason_too(tmp_path):
 )
 def test_a_span_that_is_none_is_told(text):
     with pytest.raises(SweepError, match="it must be KEY=a:b:n, n values from a to b"):
-        parse_over(text)
+        parse_range(text)
 
 
 def test_sweeps_that_make_no_sense_are_told(tmp_path):
     with pytest.raises(
         SweepError, match=r"has no number of values; add it \(:n\), or give --draws"
     ):
-        grid([parse_over("mass=1:2")])
+        grid([parse_range("mass=1:2")])
     with pytest.raises(SweepError, match=r"results go to a file that ends in \.csv or \.parquet"):
         plan(tmp_path, "mass=1:2:2", name="out.txt")
     with pytest.raises(SweepError, match="a field is given twice: mass, mass"):

@@ -10,10 +10,12 @@ from buoyancy_mj.cli import runs as runs  # isort: split
 
 from buoyancy_mj.cli import inspections as inspections  # isort: split
 
+from buoyancy_mj.cli import ballasts as ballasts  # isort: split
+
 from buoyancy_mj.cli import sweeps as sweeps  # isort: split
 
 from buoyancy_mj.cli import papers as papers  # isort: split
 
 from buoyancy_mj.cli import validations as validations  # isort: split
 
-from buoyancy_mj.cli.common import app as app
+from buoyancy_mj.cli.application import app as app

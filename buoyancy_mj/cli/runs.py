@@ -3,105 +3,81 @@
 import dataclasses
 import json
 import math
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, nullcontext
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.progress import TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from buoyancy_mj.cli.common import (
-    FILL,
-    GEOMS,
-    HULL,
-    METHOD,
-    SCENE,
-    SET,
-    TIMESTEP,
-    VEHICLE,
-    app,
-    err,
-    out,
-    quote,
-    read_scene_with_flags,
-    report_errors,
-    viewer_command,
+from buoyancy_mj.cli.application import command
+from buoyancy_mj.cli.console import err, out, print_line, show_progress, viewer_command
+from buoyancy_mj.cli.flags import (
+    Json,
+    RunFlags,
+    SceneArgument,
+    SceneFlags,
+    SelectionFlags,
+    check_recording_name,
 )
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.frames import Summary
+from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
 
-@app.command()
-@report_errors
+@command()
 def run(
-    scene: SCENE,
-    vehicle: VEHICLE = None,
-    duration: Annotated[float | None, typer.Option(help="Simulated time [s].")] = None,
-    timestep: TIMESTEP = None,
-    method: METHOD = None,
+    scene: SceneArgument,
+    flags: RunFlags,
+    selection: SelectionFlags,
     record: Annotated[
-        Path | None, typer.Option(help="Where to record; otherwise recordings/SCENE.rrd.")
+        Path | None, typer.Option(help="Record to this file instead of recordings/SCENE.rrd.")
     ] = None,
     no_record: Annotated[
         bool, typer.Option("--no-record", help="Do not record to a file.")
     ] = False,
     live: Annotated[
-        bool, typer.Option("--live", help="Stream to a Rerun viewer while it runs.")
+        bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
     ] = False,
-    settings: SET = None,
-    geoms: GEOMS = None,
-    hull: HULL = None,
-    fill: FILL = None,
-    as_json: Annotated[
-        bool,
-        typer.Option("--json", help="The summary as JSON on the standard output, nothing else."),
-    ] = False,
+    as_json: Json = False,
 ) -> None:
     """Run a scene headless, record it and sum it up."""
     if record is not None and no_record:
         raise SceneError("--record and --no-record contradict each other; give one of them")
-    if record is not None and record.suffix != ".rrd":
-        raise SceneError(f"--record is '{record}'; a recording's name ends in .rrd")
+    check_recording_name(record)
+
+    # the run
     path = catalog.scene_path(scene)
-    chosen = read_scene_with_flags(
-        path, vehicle, duration, timestep, settings, method, geoms=geoms, hull=hull, fill=fill
-    )
+    settings = [*flags.overrides(), *selection.overrides()]
     with err.status(
         "preparing (the first run after an installation compiles, which takes some seconds)"
     ):
-        simulation = Simulation(chosen)
+        simulation = Simulation(read_scene(path, settings))
     target = None if no_record else record or Path("recordings") / f"{path.stem}.rrd"
-    summary, file = _recorded(simulation, target, live=live)
+    recording = _run_to_end(simulation, target, live=live)
+
+    # its summary
+    summary = simulation.summary()
     if as_json:
-        plain = {
-            k: None if isinstance(v, float) and not math.isfinite(v) else v
-            for k, v in dataclasses.asdict(summary).items()
-        }
-        print(json.dumps(plain | {"recording": str(file) if file else None}, indent=2))
+        typer.echo(_to_json(summary, recording))
         return
     table = Table(title=summary.scene, show_header=False, title_justify="left")
     for name, value in summary.rows():
         table.add_row(name, value)
     out.print(table)
-    if file is not None:
-        out.print(
-            f"open the recording: {viewer_command()} {quote(file)}", highlight=False, soft_wrap=True
-        )
+    if recording is not None:
+        print_line(out, f"open the recording: {viewer_command(recording)}")
 
 
-@app.command("list")
-@report_errors
+@command("list")
 def list_() -> None:
     """List the scenes and models that ship."""
-    for title, rows in (
-        ("scenes", {name: read_scene(path).title for name, path in catalog.scenes().items()}),
-        ("models", {name: catalog.summary(path) for name, path in catalog.models().items()}),
-    ):
+    scenes = {name: read_scene(path).title for name, path in catalog.scenes().items()}
+    models = {name: catalog.summary(path) for name, path in catalog.models().items()}
+    for title, rows in (("scenes", scenes), ("models", models)):
         table = Table(
             title=title, show_header=False, title_justify="left", box=None, padding=(0, 2)
         )
@@ -110,86 +86,52 @@ def list_() -> None:
         out.print(table)
 
 
-@app.command()
-@report_errors
-def view(
-    scene: SCENE,
-    vehicle: VEHICLE = None,
-    timestep: TIMESTEP = None,
-    method: METHOD = None,
-    settings: SET = None,
-    geoms: GEOMS = None,
-    hull: HULL = None,
-    fill: FILL = None,
-) -> None:
-    """Open MuJoCo's interactive viewer with the water acting and drawn in it."""
-    from buoyancy_mj.viz.viewer import view as show
+@command()
+def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> None:
+    """Show a scene in MuJoCo's interactive viewer, with its water."""
+    from buoyancy_mj.viz.viewer import view_simulation  # needs a display, which 'run' does not
 
-    show(
-        Simulation(
-            read_scene_with_flags(
-                catalog.scene_path(scene),
-                vehicle,
-                None,
-                timestep,
-                settings,
-                method,
-                geoms=geoms,
-                hull=hull,
-                fill=fill,
-            )
-        )
-    )
+    settings = [*flags.overrides(), *selection.overrides()]
+    view_simulation(Simulation(read_scene(catalog.scene_path(scene), settings)))
 
 
-def _recorded(
-    simulation: Simulation, target: Path | None, *, live: bool
-) -> tuple[Summary, Path | None]:
-    """Run to the end, recording as asked; a run that breaks off says what it leaves."""
+def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> Path | None:
+    """Run to the end, and record to a file, to a live viewer, or to both; the file."""
     if target is None and not live:
-        with _progress(simulation) as advance:
-            for frame in simulation.frames():
-                advance(frame.time)
-        return simulation.summary(), None
-    from buoyancy_mj.viz.recording import Recording
+        _run_frames(simulation, lambda _: None)
+        return None
+    from buoyancy_mj.viz.recording import Recording  # needs Rerun, which takes time to import
 
     recording = Recording(simulation, target, live=live)
     try:
-        with _progress(simulation) as advance:
-            for frame in simulation.frames():
-                recording.add(frame)
-                advance(frame.time)
+        _run_frames(simulation, recording.add)
     except BaseException as error:
         # whatever ends the run, what was recorded stays
         if not recording.closed:
-            _left(recording.close(simulation.summary(), complete=False), simulation.data.time)
+            partial = recording.close(simulation.summary(), complete=False)
+            if partial is not None:
+                time = simulation.data.time
+                print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
         if isinstance(error, KeyboardInterrupt):
             raise typer.Exit(130) from None
         raise
-    summary = simulation.summary()
-    return summary, recording.close(summary)
+    return recording.close(simulation.summary())
 
 
-def _left(file: Path | None, time: float) -> None:
-    if file is not None:
-        err.print(
-            f"the recording up to {time:.2f} s is in '{file}'", highlight=False, soft_wrap=True
-        )
+def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
+    """Run to the end, calling `add` with each frame, and show the simulated time."""
+    scene = simulation.scene
+    columns = TextColumn("{task.completed:.1f} of {task.total:.1f} s"), TimeRemainingColumn()
+    with show_progress(scene.title, scene.duration, *columns) as update:
+        for frame in simulation.frames():
+            add(frame)
+            update(completed=frame.time)
 
 
-@contextmanager
-def _progress(simulation: Simulation) -> Iterator[Callable[[float], None]]:
-    """A bar in simulated time, where a person looks on."""
-    if not err.is_terminal:
-        with nullcontext():
-            yield lambda time: None
-        return
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(),
-        TextColumn("{task.completed:.1f} of {task.total:.1f} s"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=err, transient=True) as progress:
-        task = progress.add_task(simulation.scene.title, total=simulation.scene.duration)
-        yield lambda time: progress.update(task, completed=time)
+def _to_json(summary: Summary, recording: Path | None) -> str:
+    """A summary and the path of its recording as JSON, which knows finite numbers only."""
+    values = {
+        name: None if isinstance(value, float) and not math.isfinite(value) else value
+        for name, value in dataclasses.asdict(summary).items()
+    }
+    return json.dumps(values | {"recording": str(recording) if recording else None}, indent=2)

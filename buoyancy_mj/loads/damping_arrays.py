@@ -5,6 +5,7 @@ The model gives it, or it is estimated from the hulls as `Damping` chooses.
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -17,7 +18,8 @@ from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.loads.damping import Damping, Panels, Silhouette
 from buoyancy_mj.loads.matrices import check_eigenvalues
-from buoyancy_mj.loads.silhouettes import estimate_drag
+from buoyancy_mj.loads.silhouettes import Silhouettes, estimate_drag, measure_silhouettes
+from buoyancy_mj.meshes.mesh import TriMesh
 
 _ENTRIES = {3: "heave, roll, pitch", 6: "surge, sway, heave, roll, pitch, yaw"}
 """Names of the entries of damping, by their number."""

@@ -1,4 +1,4 @@
-"""Results of sweeps in files: a journal that outlasts a kill, and tables of parquet."""
+"""Results of sweeps in files: a journal of CSV that survives a kill, and tables of parquet."""
 
 import csv
 import os
@@ -8,33 +8,43 @@ from typing import Any
 
 from buoyancy_mj.errors import SweepError
 
+_TEXT_COLUMNS = ("scene", "status", "reason", "method")
+"""Columns that hold texts; all others hold numbers."""
+
 
 class Journal:
-    """Rows of finished runs in a CSV file: written as they come, and read when a sweep goes on."""
+    """Rows of finished runs in a CSV file, written as they come, and read when a sweep goes on.
+
+    Args:
+        path: the file.
+        header: its columns.
+        scene: a digest of what its runs have in common.
+        finished: rows that a finished sweep has left elsewhere.
+
+    Raises:
+        SweepError: the file holds something else, or cannot be written.
+    """
 
     def __init__(
-        self, path: Path, header: Sequence[str], scene: str, known: Sequence[Mapping[str, Any]] = ()
+        self,
+        path: Path,
+        header: Sequence[str],
+        scene: str,
+        finished: Sequence[Mapping[str, Any]] = (),
     ) -> None:
-        """Open it, and read the runs that it holds.
-
-        Args:
-            path: of the file.
-            header: its columns.
-            scene: a digest of what does not.
-            known: rows that a finished sweep has left elsewhere.
-
-        Raises:
-            SweepError: the file holds something else, or cannot be written.
-        """
         self.header = list(header)
+        """The columns."""
         self.rows: dict[int, dict[str, str]] = {}
+        """Rows by the number of the run."""
         try:
-            whole = path.read_bytes() if path.exists() else b""
             # a line that a kill broke off does not count
-            complete = whole[: whole.rfind(b"\n") + 1]
+            content = path.read_bytes() if path.exists() else b""
+            complete = content[: content.rfind(b"\n") + 1]
             rows = csv.DictReader(complete.decode().splitlines())
-            if complete or known:
-                self._take(path, rows.fieldnames or known[0], [*rows, *known], scene)
+            if complete or finished:
+                self._accept(path, rows.fieldnames or finished[0], [*rows, *finished], scene)
+
+            # new rows go to the end of the complete lines
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file = path.open("r+" if path.exists() else "w", newline="")
             self._file.truncate(len(complete))
@@ -44,44 +54,47 @@ class Journal:
         self._writer = csv.DictWriter(self._file, self.header)
         if not complete:
             self._writer.writeheader()
-            for row in known:
-                self._writer.writerow(row)
-
-    def _take(
-        self, path: Path, header: Iterable[str], rows: Sequence[Mapping[str, Any]], scene: str
-    ) -> None:
-        """Believe rows of earlier sweeps, if they are of this one."""
-        if list(header) != self.header:
-            raise SweepError(
-                f"'{path}' holds other columns than this sweep has; give another --out, or remove it"
-            )
-        for row in rows:
-            if row["scene"] != scene:
-                raise SweepError(
-                    f"'{path}' holds runs of another scene, or with other flags; give another --out, or remove it"
-                )
-            self.rows[int(row["run"])] = {
-                key: "" if value is None else str(value) for key, value in row.items()
-            }
+            self._writer.writerows(finished)
 
     def add(self, row: Mapping[str, Any]) -> None:
         """Write one row."""
-        plain = {key: "" if value is None else value for key, value in row.items()}
-        self._writer.writerow(plain)
-        self.rows[int(row["run"])] = {key: str(value) for key, value in plain.items()}
+        texts = _as_texts(row)
+        self._writer.writerow(texts)
+        self.rows[int(row["run"])] = texts
 
     def save(self) -> None:
-        """See the rows onto the disk."""
+        """Force the rows onto the disk."""
         self._file.flush()
         os.fsync(self._file.fileno())
 
     def close(self) -> None:
-        """No more rows."""
+        """Close the file."""
         self._file.close()
+
+    def _accept(
+        self, path: Path, header: Iterable[str], rows: Iterable[Mapping[str, Any]], scene: str
+    ) -> None:
+        """Take rows of earlier sweeps, if they are of this one."""
+        if list(header) != self.header:
+            raise SweepError(
+                f"'{path}' holds other columns than this sweep has; give another --out, "
+                "or remove it"
+            )
+        for row in rows:
+            if row["scene"] != scene:
+                raise SweepError(
+                    f"'{path}' holds runs of another scene, or with other flags; give another "
+                    "--out, or remove it"
+                )
+            self.rows[int(row["run"])] = _as_texts(row)
 
 
 def read_parquet(path: Path) -> list[dict[str, Any]]:
-    """The rows that a finished sweep has left, if there are any."""
+    """Read the rows that a finished sweep has left; none if there is no file.
+
+    Raises:
+        SweepError: the file cannot be read.
+    """
     from pyarrow import ArrowException, parquet
 
     if not path.exists():
@@ -96,16 +109,22 @@ def read_parquet(path: Path) -> list[dict[str, Any]]:
 
 
 def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequence[str]) -> None:
-    """All rows as a table, numbers as numbers."""
+    """Write all rows as a table, numbers as numbers."""
     import pyarrow as pa  # comes along with Rerun
     from pyarrow import parquet
 
     columns: dict[str, list[Any]] = {}
     for name in header:
-        column: list[Any] = [row[name] for row in rows]
-        if name not in ("scene", "status", "reason", "method"):
-            column = [float(value) if value != "" else None for value in column]
-        columns[name] = column
+        texts = [row[name] for row in rows]
+        if name in _TEXT_COLUMNS:
+            columns[name] = [*texts]
+        else:
+            columns[name] = [float(text) if text != "" else None for text in texts]
     part = path.with_suffix(".partial.parquet")
     parquet.write_table(pa.table(columns), part)
     part.replace(path)
+
+
+def _as_texts(row: Mapping[str, Any]) -> dict[str, str]:
+    """The cells of a row as they stand in CSV; None is empty."""
+    return {key: "" if value is None else str(value) for key, value in row.items()}

@@ -1,4 +1,4 @@
-"""`Scene`: what one run needs, read from TOML and validated."""
+"""`Scene`: all that one run needs, read from TOML and validated."""
 
 import dataclasses
 import math
@@ -11,10 +11,10 @@ import mujoco
 
 from buoyancy_mj.errors import SceneError, choices
 from buoyancy_mj.loads.coefficients import CoefficientsFile
+from buoyancy_mj.scenes.overrides import apply_setting
 from buoyancy_mj.settings.config import SELECTION
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.tables import build
-from buoyancy_mj.settings.texts import parse_value
 from buoyancy_mj.settings.toml import (
     damping_from_table,
     method_from_table,
@@ -23,79 +23,64 @@ from buoyancy_mj.settings.toml import (
     water_from_table,
 )
 
-_VECTORS = (
-    "cog_shift",
-    "water.current",
-    "start.position",
-    "start.velocity",
-    "start.angular_velocity",
-)
-"""Fields whose numbers may be set one by one, though all are missing."""
 EQUILIBRIUM = "equilibrium"
 """Value of `Start.at`."""
 INTEGRATORS = {
-    name.lower(): value
-    for name, value in (
-        (key.removeprefix("mjINT_"), item) for key, item in mujoco.mjtIntegrator.__members__.items()
-    )
+    name.removeprefix("mjINT_").lower(): integrator
+    for name, integrator in mujoco.mjtIntegrator.__members__.items()
 }
 """MuJoCo's integrators by lower-case name."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Start:
-    """Where and how fast the vehicle starts.
+    """Pose and velocity of the vehicle at the start.
 
     Raises:
         SceneError: a value that is not finite.
     """
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Of the vehicle's root body (3,) [m], world frame."""
+    """Position of the vehicle's root body (3,) [m], world frame."""
     roll: float = 0.0
-    """About its x axis [rad]."""
+    """Angle about the root body's x axis [rad]."""
     pitch: float = 0.0
-    """About its y axis, bow down [rad]."""
+    """Angle about the root body's y axis, bow down [rad]."""
     yaw: float = 0.0
-    """About the vertical [rad]; turned first, then pitch, then roll."""
+    """Angle about the vertical [rad]; the vehicle turns by yaw first, then pitch, then roll."""
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Of the root body (3,) [m/s], world frame."""
+    """Velocity of the root body (3,) [m/s], world frame."""
     angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Of the root body (3,) [rad/s], its own frame."""
+    """Angular velocity of the root body (3,) [rad/s], in its own frame."""
     keyframe: str | None = None
-    """A keyframe of the vehicle, for its joints and controls; position and attitude come from here."""
+    """Keyframe of the vehicle for its joints and controls; the pose stays that of the start."""
     at: str | None = None
-    """'equilibrium' to start at rest on still water, downhill from the attitude here; place and yaw stay."""
+    """'equilibrium' starts at rest on still water, which is sought downhill from the attitude here;
+    horizontal position and yaw stay."""
 
     def __post_init__(self) -> None:
         if self.at not in (None, EQUILIBRIUM):
             raise SceneError(f"start.at is '{self.at}'; possible: {EQUILIBRIUM}, or leave it out")
-        numbers = (
-            *self.position,
-            self.roll,
-            self.pitch,
-            self.yaw,
-            *self.velocity,
-            *self.angular_velocity,
-        )
+        angles = self.roll, self.pitch, self.yaw
+        numbers = (*self.position, *angles, *self.velocity, *self.angular_velocity)
         if not all(math.isfinite(number) for number in numbers):
             raise SceneError(f"start holds {numbers}; every number must be finite")
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Scene(Settings):
-    """A vehicle, its start and how long to look, beside the settings of its water.
+    """A vehicle, its start and its duration, beside the settings of its water.
 
     Raises:
         SceneError: a value out of its range.
     """
 
     title: str
-    """One line."""
+    """Title of the scene, one line."""
     vehicle: str
-    """MJCF or URDF file, or the name of a model that ships."""
+    """MJCF or URDF file of the vehicle, or the name of a model that ships."""
     environment: str | None = None
-    """MJCF file of what stands around, or the name of one that ships."""
+    """MJCF file of the surroundings, or the name of an environment that ships."""
     duration: float = 5.0
     """Simulated time [s]."""
     timestep: float = 0.01
@@ -103,19 +88,21 @@ class Scene(Settings):
     integrator: str = "implicitfast"
     """MuJoCo's integrator."""
     record_rate: float = 60.0
-    """Frames recorded per simulated second [Hz]."""
+    """Number of frames recorded per simulated second [Hz]."""
     start: Start = Start()
     """Pose and velocity at time 0."""
     coefficients: CoefficientsFile | None = None
-    """A potential-flow code's dataset of added mass and radiation damping, for bodies that state none themselves."""
+    """A potential-flow code's dataset of added mass and radiation damping, for bodies whose file
+    states none."""
     mass: float | None = None
-    """Mass of the whole vehicle [kg], the masses and inertias of its bodies scaled alike; None for its own."""
+    """Mass of the whole vehicle [kg], reached by one factor on the masses and inertias of all its
+    bodies; None keeps the masses of its file."""
     cog_shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """How far the centre of gravity of the vehicle's root body is moved, in its frame (3,) [m]."""
+    """Shift of the centre of gravity of the vehicle's root body, in its frame (3,) [m]."""
     text: str = ""
     """The scene as TOML text, for the record."""
     folder: Path = Path()
-    """What relative paths in it start from."""
+    """Folder from which relative paths in the scene start."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -135,7 +122,8 @@ class Scene(Settings):
             raise SceneError(f"cog_shift is {self.cog_shift}; every number must be finite")
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(
-                f"unknown integrator '{self.integrator}'; {choices(self.integrator.lower(), INTEGRATORS)}"
+                f"unknown integrator '{self.integrator}'; "
+                f"{choices(self.integrator.lower(), INTEGRATORS)}"
             )
 
 
@@ -147,85 +135,64 @@ KEYS = (
 
 
 def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
-    """The scene in a TOML file, with `settings` such as 'water.waves.0.amplitude=0.1' laid over it.
+    """Read the scene in a TOML file, with settings laid over it.
+
+    Args:
+        path: the file.
+        settings: texts KEY=VALUE such as 'water.waves.0.amplitude=0.1'.
 
     Raises:
         SceneError: the file or a setting cannot be read, or says something that makes no sense.
     """
     try:
-        table = tomllib.loads(path.read_text())
-    except (OSError, UnicodeDecodeError) as error:
-        raise SceneError(f"cannot read scene '{path}': {error}") from error
+        text = path.read_text()
+        table = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"scene '{path}' is no valid TOML: {error}") from error
+    except (OSError, UnicodeDecodeError) as error:
+        raise SceneError(f"cannot read scene '{path}': {error}") from error
     for setting in settings:
-        _set(table, setting)
-    told = "".join(f"# with {setting}\n" for setting in settings)
-    return scene_from_table(
-        table, where=f"scene '{path.stem}'", text=told + path.read_text(), folder=path.parent
-    )
+        apply_setting(table, setting)
+    header = "".join(f"# with {setting}\n" for setting in settings)
+    where = f"scene '{path.stem}'"
+    return scene_from_table(table, where=where, text=header + text, folder=path.parent)
 
 
 def scene_from_table(
     table: Mapping[str, Any], where: str = "scene", text: str = "", folder: Path = Path()
 ) -> Scene:
-    """The scene that a table of plain values describes, see `read_scene`."""
+    """Make the scene that a table of plain values describes, as TOML has them.
+
+    Args:
+        table: the keys of a scene's file, `KEYS`, and their values.
+        where: what errors call the table.
+        text: the table as TOML text, for the record.
+        folder: where relative paths in the table start.
+
+    Raises:
+        SceneError: an unknown key, a missing one, or a value that makes no sense.
+    """
     plain = dict(table)
-    given: dict[str, Any] = {"text": text, "folder": folder}
-    given["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
-    given["start"] = build(
-        Start, table_of(plain.pop("start", {}), f"{where}: start"), f"{where}: start"
-    )
-    given["damping"] = damping_from_table(plain.pop("damping", True), f"{where}: damping")
+    fields: dict[str, Any] = {"text": text, "folder": folder}
+
+    # tables in the table
+    fields["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
+    start = table_of(plain.pop("start", {}), f"{where}: start")
+    fields["start"] = build(Start, start, f"{where}: start")
+    fields["damping"] = damping_from_table(plain.pop("damping", True), f"{where}: damping")
+    fields["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
     if "coefficients" in plain:
         place = f"{where}: coefficients"
-        given["coefficients"] = build(
+        fields["coefficients"] = build(
             CoefficientsFile, table_of(plain.pop("coefficients"), place), place
         )
-    given["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
+
+    # the fields of the selection stand among those of the scene
     patterns = {key: plain.pop(key) for key in SELECTION if key in plain}
-    given["selection"] = selection_from_table(patterns, where)
-    # keys of the scene that are tables of their own are still its keys
+    fields["selection"] = selection_from_table(patterns, where)
+
+    # an unknown key is told among all keys of a file, not only those left in the table
     for key in plain:
         if key not in KEYS:
             raise SceneError(f"{where}: unknown key '{key}'; {choices(key, KEYS)}")
-    return build(Scene, plain, where, **given)
-
-
-def _set(table: dict[str, Any], setting: str) -> None:
-    """Lay one KEY=VALUE over a table; VALUE is TOML, or a bare word."""
-    key, equals, text = setting.partition("=")
-    if not equals or not key.strip():
-        raise SceneError(
-            f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2"
-        )
-    value = parse_value(text)
-    place: Any = table
-    *path, last = key.strip().split(".")
-    if ".".join(path) in _VECTORS:
-        # one number of a vector that the file does not give
-        owner = table.setdefault(path[0], {}) if len(path) > 1 else table
-        if isinstance(owner, dict):
-            owner.setdefault(path[-1], [0.0, 0.0, 0.0])
-    for depth, part in enumerate(path):
-        place = _entry(place, part, ".".join(path[: depth + 1]), make=True)
-    if isinstance(place, list):
-        _entry(place, last, key, make=False)
-        place[int(last)] = value
-    elif isinstance(place, dict):
-        place[last] = value
-    else:
-        raise SceneError(f"cannot set '{key}': '{'.'.join(path)}' is {place!r}, no table")
-
-
-def _entry(place: Any, part: str, key: str, *, make: bool) -> Any:
-    """One step into a table or a list."""
-    if isinstance(place, list):
-        if not (part.isascii() and part.isdigit()) or int(part) >= len(place):
-            raise SceneError(
-                f"cannot set '{key}': the list has {len(place)} entries, counted from 0"
-            )
-        return place[int(part)]
-    if not isinstance(place, dict):
-        raise SceneError(f"cannot set '{key}': it lies in {place!r}, no table")
-    return place.setdefault(part, {}) if make else place[part]
+    return build(Scene, plain, where, **fields)

@@ -8,9 +8,8 @@ from collections.abc import Iterator, Sequence
 import mujoco
 from numpy.typing import ArrayLike
 
-from buoyancy_mj.cli.common import GEOMS
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
-from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, Selection
 from buoyancy_mj.meshes.overlaps import find_close_pairs, measure_overlaps
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
@@ -239,5 +238,5 @@ def _add_item(spec: mujoco.MjSpec, root: mujoco.MjsBody, item: BallastItem) -> N
         mass=0.0,
     )
     for text in spec.texts:
-        if text.name.rsplit("/", 1)[-1] == GEOMS:
+        if text.name.rsplit("/", 1)[-1] == CUSTOM_TEXTS["geoms"]:
             text.data = f"{text.data} {item.label}"

@@ -19,7 +19,7 @@ FRAME_TIME = 1.0 / 60.0
 """Wall time between two pictures [s]."""
 
 
-def view(simulation: Simulation) -> None:
+def view_simulation(simulation: Simulation) -> None:
     """Open the viewer and run in real time until its window is closed.
 
     The mouse drags the vehicle as in any MuJoCo model; the scene's duration does not end the run.

@@ -1,0 +1,72 @@
+"""Single values laid over the table of a scene: KEY=VALUE, as `--set` gives them."""
+
+from typing import Any
+
+from buoyancy_mj.errors import SceneError
+from buoyancy_mj.settings.texts import parse_value
+
+_VECTORS = (
+    "cog_shift",
+    "water.current",
+    "start.position",
+    "start.velocity",
+    "start.angular_velocity",
+)
+"""Keys of vectors whose numbers may be set one by one, though the file has none of them."""
+
+
+def apply_setting(table: dict[str, Any], setting: str) -> None:
+    """Lay one KEY=VALUE over a table; VALUE is TOML, or a bare word.
+
+    KEY is a path through tables, by names, and through lists, by places counted from 0:
+    'water.waves.0.amplitude'. Tables that are missing on the way are made.
+
+    Raises:
+        SceneError: the text is no setting, or its key leads nowhere.
+    """
+    key, equals, text = setting.partition("=")
+    if not equals or not key.strip():
+        raise SceneError(
+            f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2"
+        )
+    value = parse_value(text)
+    *path, last = key.strip().split(".")
+    if ".".join(path) in _VECTORS:
+        _add_vector(table, path)
+
+    # the table or list that holds the value
+    holder: Any = table
+    for depth, part in enumerate(path):
+        holder = _step(holder, part, ".".join(path[: depth + 1]))
+
+    # the value
+    if isinstance(holder, list):
+        holder[_index(holder, last, key)] = value
+    elif isinstance(holder, dict):
+        holder[last] = value
+    else:
+        raise SceneError(f"cannot set '{key}': '{'.'.join(path)}' is {holder!r}, no table")
+
+
+def _add_vector(table: dict[str, Any], path: list[str]) -> None:
+    """Add a vector of zeros at the end of a path, where there is none."""
+    *above, name = path
+    holder = table.setdefault(above[0], {}) if above else table
+    if isinstance(holder, dict):
+        holder.setdefault(name, [0.0, 0.0, 0.0])
+
+
+def _step(holder: Any, part: str, key: str) -> Any:
+    """What a table or a list holds at one part of a path; an empty table where there is nothing."""
+    if isinstance(holder, list):
+        return holder[_index(holder, part, key)]
+    if not isinstance(holder, dict):
+        raise SceneError(f"cannot set '{key}': it lies in {holder!r}, no table")
+    return holder.setdefault(part, {})
+
+
+def _index(entries: list[Any], part: str, key: str) -> int:
+    """The place in a list that one part of a path names."""
+    if not (part.isascii() and part.isdigit()) or int(part) >= len(entries):
+        raise SceneError(f"cannot set '{key}': the list has {len(entries)} entries, counted from 0")
+    return int(part)

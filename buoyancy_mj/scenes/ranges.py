@@ -1,0 +1,86 @@
+"""The values that a sweep gives to fields of a scene: a grid, or random draws."""
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from buoyancy_mj.errors import SweepError
+
+
+@dataclasses.dataclass(frozen=True)
+class FieldRange:
+    """One field of the scene and the range of its values."""
+
+    key: str
+    """Key of the field, as for `--set`: 'water.waves.0.amplitude'."""
+    low: float
+    """First value."""
+    high: float
+    """Last value."""
+    count: int
+    """Number of values in a grid, evenly spaced; random draws do not use it."""
+
+    @property
+    def values(self) -> list[float]:
+        """The values in a grid."""
+        values: list[float] = np.linspace(self.low, self.high, self.count).tolist()
+        return values
+
+
+def parse_range(text: str) -> FieldRange:
+    """Parse 'KEY=a:b:n', n values from a to b, or 'KEY=a:b' for random draws.
+
+    Raises:
+        SweepError: the text is neither.
+    """
+    key, _, span = text.partition("=")
+    try:
+        low, high, count = _parse_span(span)
+        if not key.strip():
+            raise ValueError
+    except ValueError:
+        raise SweepError(
+            f"--over is '{text}'; it must be KEY=a:b:n, n values from a to b, as "
+            "start.position.2=0:0.5:6, or KEY=a:b with --draws"
+        ) from None
+    return FieldRange(key.strip(), low, high, count)
+
+
+def grid(ranges: Sequence[FieldRange]) -> list[tuple[float, ...]]:
+    """All combinations of values, the last field fastest.
+
+    Raises:
+        SweepError: a range without a number of values.
+    """
+    for one in ranges:
+        if one.count == 0:
+            raise SweepError(
+                f"--over {one.key}={one.low:g}:{one.high:g} has no number of values; add it (:n), "
+                "or give --draws"
+            )
+    return list(itertools.product(*(one.values for one in ranges)))
+
+
+def draws(ranges: Sequence[FieldRange], count: int, seed: int) -> list[tuple[float, ...]]:
+    """Random combinations of values, each uniform in its range; the same for the same seed."""
+    low = np.array([one.low for one in ranges])
+    high = np.array([one.high for one in ranges])
+    rows = np.random.default_rng(seed).uniform(low, high, (count, len(ranges)))
+    return [tuple(row) for row in rows.tolist()]
+
+
+def _parse_span(span: str) -> tuple[float, float, int]:
+    """The numbers of 'a:b:n', or of 'a:b' with n = 0; a ValueError where they make no sense."""
+    first, last, *counts = span.split(":")
+    low, high = float(first), float(last)
+    if not (math.isfinite(low) and math.isfinite(high)):
+        raise ValueError
+    if not counts:
+        return low, high, 0
+    (count,) = map(int, counts)
+    if count < 1:
+        raise ValueError
+    return low, high, count
