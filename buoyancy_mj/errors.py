@@ -1,7 +1,7 @@
 """What can go wrong, said in one sentence.
 
 In: nothing.
-Out: exceptions with one root, `BuoyancyError`, that give the value got, what was possible, the mend.
+Out: exceptions with one root, `BuoyancyError`, and `choices`, which ends their messages.
 May import: nothing of this package.
 """
 
