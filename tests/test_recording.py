@@ -232,7 +232,7 @@ def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_t
         )
         recording = Recording(simulation, tmp_path / f"{chosen}.rrd")
         recording.add(next(simulation.frames()))
-        found.append({geom: wet.copy() for geom, wet in recording._wet.items()})
+        found.append({geom: wet.copy() for geom, wet in recording._bodies.wet.items()})
         recording.close(simulation.summary())
         assert rerun("verify", str(tmp_path / f"{chosen}.rrd")).returncode == 0
         assert "/world/waterline" in entities(
