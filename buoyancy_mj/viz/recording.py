@@ -62,7 +62,7 @@ class Recording:
                     self._file.discard()
                 raise
 
-        # what is drawn
+        # the picture and the plots
         self._times: list[float] = []
         self._lines: dict[plots.Line, list[float]] = {}
         self._size = 2.0 * max(
