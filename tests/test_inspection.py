@@ -370,7 +370,7 @@ def test_inspect_repairs_what_is_safe(raft, tmp_path):
     result = raft("inspect", "--repair", "mended/raft.xml")
     assert result.exit_code == 0, result.output
     assert "mended mesh 'hull' of geom 'hull'" in result.stderr
-    assert "against as it was" in result.stderr
+    assert "m^3, a change of " in result.stderr
     again = CliRunner().invoke(app, ["inspect", "mended/raft.xml", "--json"])
     after = json.loads(again.stdout)
     assert after["geoms"][0]["mesh"]["notices"] == []

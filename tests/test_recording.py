@@ -3,6 +3,7 @@
 import os
 import re
 import resource
+import shlex
 import subprocess
 import sys
 import time
@@ -134,12 +135,7 @@ def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
         sys.executable,
         "-m",
         "buoyancy_mj",
-        "run",
-        "auv_waves",
-        "--duration",
-        "10000",
-        "--record",
-        "run.rrd",
+        *shlex.split("run auv_waves --duration 10000 --record run.rrd"),
     ]
     process = subprocess.Popen(
         command, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True
@@ -231,7 +227,7 @@ def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_t
         )
         recording = Recording(simulation, tmp_path / f"{chosen}.rrd")
         recording.add(next(simulation.frames()))
-        found.append({geom: wet.copy() for geom, wet in recording._wet.items()})
+        found.append({geom: wet.copy() for geom, wet in recording._bodies.wet.items()})
         recording.close(simulation.summary())
         assert rerun("verify", str(tmp_path / f"{chosen}.rrd")).returncode == 0
         assert "/world/waterline" in entities(
@@ -276,11 +272,7 @@ def test_a_live_viewer_that_cannot_open_is_told_and_leaves_nothing(tmp_path):
         sys.executable,
         "-m",
         "buoyancy_mj",
-        "run",
-        "hourglass_drop_still",
-        "--live",
-        "--record",
-        "out.rrd",
+        *shlex.split("run hourglass_drop_still --live --record out.rrd"),
     ]
     done = subprocess.run(
         command,

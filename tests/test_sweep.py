@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import shlex
 import signal
 import subprocess
 import sys
@@ -270,14 +271,9 @@ def test_sweeps_that_make_no_sense_are_told(tmp_path):
 def test_the_command_tells_how_many_failed(tmp_path):
     out = tmp_path / "rows.csv"
     arguments = [
-        "sweep",
-        "hourglass_drop_still",
-        "--over",
-        "mass=-100:100:3",
-        "--duration",
-        "0.1",
-        "--out",
-        str(out),
+        *shlex.split(
+            f"sweep hourglass_drop_still --over mass=-100:100:3 --duration 0.1 --out {out}"
+        )
     ]
     told = CliRunner().invoke(app, arguments)
     assert told.exit_code == 0, told.output

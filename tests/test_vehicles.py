@@ -5,6 +5,7 @@ robosuite, example-robot-data and pybullet, none of which are kept here.
 """
 
 import json
+import shlex
 
 import numpy as np
 import pytest
@@ -49,17 +50,7 @@ def inspect_model(path, *flags):
 def ran(path, *flags):
     result = CliRunner().invoke(
         app,
-        [
-            "run",
-            "auv_waves",
-            "--vehicle",
-            path,
-            "--no-record",
-            "--json",
-            "--duration",
-            "0.5",
-            *flags,
-        ],
+        [*shlex.split(f"run auv_waves --vehicle {path} --no-record --json --duration 0.5"), *flags],
     )
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout), result.stderr

@@ -66,7 +66,10 @@ def main(
 
 @contextmanager
 def _report_errors() -> Iterator[None]:
-    """Print errors of this package, and warnings as notes, as lines on the standard error."""
+    """Print errors of this package, and warnings as notes, as lines on the standard error.
+
+    An error ends the command with exit status 1, an interrupt with 130, as shells have it.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("always")
         warnings.showwarning = _print_note
@@ -78,6 +81,8 @@ def _report_errors() -> Iterator[None]:
         except BuoyancyError as error:
             print_line(err, f"error: {error}", style="red")
             raise typer.Exit(1) from error
+        except KeyboardInterrupt:
+            raise typer.Exit(130) from None
 
 
 def _print_note(message: Warning | str, *_: Any, **__: Any) -> None:

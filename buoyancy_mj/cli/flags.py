@@ -98,7 +98,7 @@ class SelectionFlags:
 
 
 def check_recording_name(path: Path | None) -> None:
-    """Check that a recording's name, if one is given, ends in .rrd.
+    """Check that the name of a recording, if there is one, ends in .rrd.
 
     Raises:
         SceneError: it does not.

@@ -105,15 +105,13 @@ def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> P
     recording = Recording(simulation, target, live=live)
     try:
         _run_frames(simulation, recording.add)
-    except BaseException as error:
+    except BaseException:
         # whatever ends the run, what was recorded stays
         if not recording.closed:
             partial = recording.close(simulation.summary(), complete=False)
             if partial is not None:
                 time = simulation.data.time
                 print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
-        if isinstance(error, KeyboardInterrupt):
-            raise typer.Exit(130) from None
         raise
     return recording.close(simulation.summary())
 

@@ -1,4 +1,4 @@
-"""Simulations that leave the finite numbers, told by MuJoCo's own counters of bad values."""
+"""Simulations that leave the finite numbers, by MuJoCo's counters of bad values."""
 
 import mujoco
 import numpy as np
@@ -12,7 +12,7 @@ _QUANTITIES = {
     mujoco.mjtWarning.mjWARN_BADQVEL: "velocity",
     mujoco.mjtWarning.mjWARN_BADQACC: "acceleration",
 }
-"""What MuJoCo has found to be bad, by the warning that it counts."""
+"""The quantity that is bad, by the warning that MuJoCo counts."""
 
 
 def check_finite(scene: Scene, model: mujoco.MjModel, data: mujoco.MjData) -> None:

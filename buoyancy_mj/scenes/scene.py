@@ -191,7 +191,7 @@ def scene_from_table(
     patterns = {key: plain.pop(key) for key in SELECTION if key in plain}
     fields["selection"] = selection_from_table(patterns, where)
 
-    # an unknown key is told among all keys of a file, not only those left in the table
+    # the error for an unknown key lists all keys of a file, those of inner tables too
     for key in plain:
         if key not in KEYS:
             raise SceneError(f"{where}: unknown key '{key}'; {choices(key, KEYS)}")

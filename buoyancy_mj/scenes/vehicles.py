@@ -1,4 +1,4 @@
-"""A vehicle's file, made ready for a scene: free, with gravity, without water and dry land."""
+"""A vehicle's file, ready for a scene: free, with gravity, without water and dry land."""
 
 import warnings
 from pathlib import Path

@@ -1,20 +1,18 @@
-"""What a recording plots, and how the viewer is laid out."""
+"""The lines that a recording plots: their values, names and colours."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 import rerun as rr
-import rerun.blueprint as rrb
 import trimesh
-from numpy.typing import NDArray
 
 from buoyancy_mj.scenes.frames import Frame
 
-TIMELINE = "sim_time"
-"""Simulated time [s]."""
 Colour = tuple[int, int, int]
 Line = tuple[str, ...]
-"""Name of a line: its plot first, what the legend shows last."""
+"""Name of a line: its plot first, the text of the legend last."""
+TIMELINE = "sim_time"
+"""Name of the timeline of simulated time [s]."""
 COLOURS: Mapping[str, Colour] = {
     "weight": (235, 200, 40),
     "buoyancy": (60, 160, 255),
@@ -23,18 +21,20 @@ COLOURS: Mapping[str, Colour] = {
     "radiation": (240, 150, 200),
     "added_mass": (170, 120, 230),
 }
-"""Of forces, in plots and as arrows."""
+"""Colours of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
+"""Colour of sums, and of forces without a colour of their own."""
 _LARGE = ("/plots/force/weight", "/plots/force/buoyancy")
 PLOTS: Mapping[str, Sequence[str]] = {
     "height [m]": ["/plots/height/**"],
     "weight and buoyancy [N]": _LARGE,
+    # small beside the weight
     "other forces [N]": ["/plots/force/**", *(f"- {path}" for path in _LARGE)],
     "submerged volume [l]": ["/plots/volume/**"],
     "attitude [deg]": ["/plots/attitude/**"],
     "energy [J]": ["/plots/energy/**"],
 }
-"""What the plots show by their titles, from top to bottom; other forces are small beside the weight."""
+"""Entities that each plot shows, by its title, from top to bottom."""
 _LINES: Mapping[Line, Colour] = {
     ("height", "centre_of_gravity"): (240, 130, 40),
     ("height", "surface"): (60, 160, 255),
@@ -47,18 +47,28 @@ _LINES: Mapping[Line, Colour] = {
     ("energy", "total"): NEUTRAL,
     ("volume", "total"): NEUTRAL,
 }
+"""Colours of the lines that every run has."""
 
 
 def entity(line: Line) -> str:
-    """Where a line stands in the recording; its parts may hold anything."""
+    """The entity of a line in the recording; the parts of its name may hold any character."""
     return "/".join(["plots", *map(rr.escape_entity_path_part, line)])
 
 
 def values(frame: Frame, weight: float) -> dict[Line, float]:
-    """All lines at one instant; volumes in litres, angles in degrees, forces [N] as magnitudes."""
-    loads, energy = frame.loads, frame.energy
+    """The values of all lines at one instant.
+
+    Args:
+        frame: the instant.
+        weight: weight of the vehicle [N].
+
+    Returns:
+        Heights [m], angles [degrees], energies [J], magnitudes of forces [N], volumes [l].
+    """
+    loads = frame.loads
+    energy = frame.energy
     roll, pitch, yaw = np.degrees(frame.attitude).tolist()
-    named: dict[Line, float] = {
+    result: dict[Line, float] = {
         ("height", "centre_of_gravity"): float(frame.centre_of_mass[2]),
         ("height", "surface"): frame.elevation,
         ("attitude", "roll"): roll,
@@ -71,19 +81,15 @@ def values(frame: Frame, weight: float) -> dict[Line, float]:
         ("force", "weight"): weight,
         ("volume", "total"): 1000.0 * float(loads.total.volume),
     }
-    named |= {
-        ("force", cause): float(np.linalg.norm(rows[:, :3].sum(axis=0)))
-        for cause, rows in loads.by_cause.items()
-    }
-    named |= {
-        ("volume", "hulls", name): 1000.0 * float(volume)
-        for name, volume in zip(loads.names, loads.hull.volume, strict=True)
-    }
-    return named
+    for cause, rows in loads.by_cause.items():
+        result["force", cause] = float(np.linalg.norm(rows[:, :3].sum(axis=0)))
+    for name, volume in zip(loads.names, loads.hull.volume, strict=True):
+        result["volume", "hulls", name] = 1000.0 * float(volume)
+    return result
 
 
 def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesLines]:
-    """How each line is drawn."""
+    """The style of each line, for the names of loads and of hulls."""
     colours: dict[Line, Colour] = {
         ("volume", "hulls", name): _hue(i) for i, name in enumerate(hulls)
     }
@@ -95,47 +101,8 @@ def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesL
     }
 
 
-def blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blueprint:
-    """3D on the left, looking at a point from a few lengths [m] away, plots on the right, playing at once."""
-    view = rrb.Spatial3DView(
-        origin="world",
-        name=title,
-        background=rrb.Background(color=[24, 30, 40]),
-        line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(
-            position=look_at + size * np.array([-0.95, -1.35, 0.6]),
-            look_target=look_at,
-            eye_up=[0, 0, 1],
-        ),
-    )
-    plots = [
-        rrb.TimeSeriesView(
-            origin="plots",
-            contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
-            name=title,
-            plot_legend=rrb.PlotLegend(
-                corner=rrb.Corner2D.RightTop, visible="/plots/volume/**" not in contents
-            ),
-        )
-        for title, contents in PLOTS.items()
-    ]
-    texts = rrb.Tabs(
-        rrb.TextDocumentView(origin="summary", name="summary"),
-        rrb.TextDocumentView(origin="scene", name="scene"),
-    )
-    return rrb.Blueprint(
-        rrb.Horizontal(
-            rrb.Vertical(view, texts, row_shares=[4, 1]), rrb.Vertical(*plots), column_shares=[3, 2]
-        ),
-        rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
-        rrb.BlueprintPanel(state="collapsed"),
-        rrb.SelectionPanel(state="collapsed"),
-    )
-
-
 def _hue(i: int) -> Colour:
-    """Colours far apart for neighbours: steps of the golden ratio around the circle of hues."""
-    red, green, blue, _ = trimesh.visual.color.hsv_to_rgba(
-        np.array([[0.61803 * i % 1.0, 0.5, 0.9]])
-    )[0].tolist()
+    """The i-th of many colours, far from its neighbours: steps of the golden ratio in hue."""
+    hsv = np.array([[0.61803 * i % 1.0, 0.5, 0.9]])
+    red, green, blue, _ = trimesh.visual.color.hsv_to_rgba(hsv)[0].tolist()
     return red, green, blue

@@ -1,9 +1,10 @@
-"""An .rrd file that grows message by message, survives whatever ends it, and is made whole at the end.
+"""An .rrd file that grows message by message and survives whatever ends it.
 
 Rerun's own file sink waits for ever on a full disk, so the bytes of its stream are written here. In
-Rerun's format each read of a stream is a header of 12 bytes, then messages of a kind and a length
-(two little-endian 64-bit integers) and that many bytes, then one of kind 0 and a footer. One file is
-one header and all the messages; `rerun rrd optimize` adds the footer and packs the frames together.
+Rerun's format each read of a stream is a header of 12 bytes, then messages, then an end. A message
+is its kind and its length (two little-endian 64-bit integers) and that many bytes; the end is a
+message of kind 0 and a footer. One file is one header and all the messages; `rerun rrd optimize`
+adds the footer and packs the frames together.
 """
 
 import os
@@ -17,22 +18,34 @@ import rerun as rr
 
 from buoyancy_mj.errors import RecordingError
 
-_HEADER, _MESSAGE, _END = 12, struct.Struct("<QQ"), 0
+_HEADER_SIZE = 12
+_MESSAGE = struct.Struct("<QQ")
+"""Kind and length of a message."""
+_END = 0
+"""Kind of the message that ends a read."""
 
 
 class RrdFile:
-    """What a stream logs, in a file; `follow` says which stream.
+    """What a stream logs, in a file.
 
     It grows under the name `NAME.partial.rrd` and takes its own when it is whole, so that a file
     which was there is replaced at once or not at all.
+
+    Args:
+        path: the file.
+        stream: logs what the file holds, from now on.
 
     Raises:
         RecordingError: the file cannot be made, or another run is writing it.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
         self.path = path
-        self.growing = path.with_name(f"{path.stem}.partial.rrd")
+        """The name of the whole file."""
+        self.partial = path.with_name(f"{path.stem}.partial.rrd")
+        """The name under which it grows."""
+        self.closed = False
+        """Whether the file has its name already, or was discarded."""
         self._written = 0
         if path.is_dir():
             raise RecordingError(
@@ -40,17 +53,13 @@ class RrdFile:
             )
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(self.growing, os.O_WRONLY | os.O_CREAT, 0o644)
+            self._descriptor = os.open(self.partial, os.O_WRONLY | os.O_CREAT, 0o644)
         except OSError as error:
             raise RecordingError(
-                f"cannot write '{self.growing}': {error.strerror}; choose another place (--record)"
+                f"cannot write '{self.partial}': {error.strerror}; choose another place (--record)"
             ) from error
-        _claim(self._descriptor, self.growing)
+        _lock(self._descriptor, self.partial)
         os.ftruncate(self._descriptor, 0)
-        self.closed = False
-
-    def follow(self, stream: rr.RecordingStream) -> None:
-        """Take what `stream` logs from now on."""
         self._stream = stream.binary_stream()
 
     def write(self) -> None:
@@ -61,7 +70,7 @@ class RrdFile:
         """
         chunk = self._stream.read() or b""
         try:
-            for message in _messages(chunk, first=self._written == 0):
+            for message in _split(chunk, with_header=self._written == 0):
                 rest = message
                 while rest:
                     rest = rest[os.write(self._descriptor, rest) :]
@@ -74,35 +83,41 @@ class RrdFile:
             ) from error
 
     def close(self, *, complete: bool) -> Path:
-        """Make the file whole and give it its name, unless it is a piece and a whole one is there.
+        """Add the footer, and give the file its name.
+
+        An incomplete recording keeps the name `NAME.partial.rrd` if there is a file `NAME.rrd`.
+
+        Args:
+            complete: whether all that should be in the file is in it.
 
         Returns:
-            Where it lies.
+            Where the file is.
 
         Raises:
             RecordingError: it cannot take its name.
         """
         os.close(self._descriptor)
         self.closed = True
-        _make_whole(self.growing)
+        _add_footer(self.partial)
         if not complete and self.path.exists():
-            return self.growing
+            return self.partial
         try:
-            os.replace(self.growing, self.path)
+            os.replace(self.partial, self.path)
         except OSError as error:
             raise RecordingError(
-                f"cannot write '{self.path}': {error.strerror}; the recording is in '{self.growing}'"
+                f"cannot write '{self.path}': {error.strerror}; "
+                f"the recording is in '{self.partial}'"
             ) from error
         return self.path
 
     def discard(self) -> None:
-        """Remove the file, for a recording that never began."""
+        """Remove the file of a recording that never began."""
         os.close(self._descriptor)
         self.closed = True
-        self.growing.unlink(missing_ok=True)
+        self.partial.unlink(missing_ok=True)
 
 
-def _claim(descriptor: int, path: Path) -> None:
+def _lock(descriptor: int, path: Path) -> None:
     """Keep other runs from writing the same file, where the system knows locks."""
     try:
         import fcntl
@@ -117,28 +132,29 @@ def _claim(descriptor: int, path: Path) -> None:
         ) from error
 
 
-def _messages(chunk: bytes, *, first: bool) -> Iterator[memoryview]:
-    """The messages of one read, without its end; its header is one too if it is the first."""
+def _split(chunk: bytes, *, with_header: bool) -> Iterator[memoryview]:
+    """Split one read of a stream into its messages, without its end, after its header if asked."""
     if not chunk:
         return
-    if first:
-        yield memoryview(chunk)[:_HEADER]
-    place = _HEADER
+    view = memoryview(chunk)
+    if with_header:
+        yield view[:_HEADER_SIZE]
+    start = _HEADER_SIZE
     while True:
-        kind, length = _MESSAGE.unpack_from(chunk, place)
+        kind, length = _MESSAGE.unpack_from(chunk, start)
         if kind == _END:
             return
-        following = place + _MESSAGE.size + length
-        yield memoryview(chunk)[place:following]
-        place = following
+        end = start + _MESSAGE.size + length
+        yield view[start:end]
+        start = end
 
 
-def _make_whole(path: Path) -> None:
-    """Give the file its footer; where that fails, for want of space, it stays as it is and can still be opened."""
+def _add_footer(path: Path) -> None:
+    """Add the footer; a file for which there is no space stays without, and still opens."""
     whole = path.with_name(f"{path.stem}.whole.rrd")
     command = [sys.executable, "-m", "rerun", "rrd", "optimize", str(path), "-o", str(whole)]
-    done = subprocess.run(command, capture_output=True, check=False)
-    if done.returncode == 0 and whole.is_file():
+    optimized = subprocess.run(command, capture_output=True, check=False)
+    if optimized.returncode == 0 and whole.is_file():
         os.replace(whole, path)
     else:
         whole.unlink(missing_ok=True)

@@ -1,22 +1,24 @@
-"""The geoms of a model as MuJoCo's viewer would draw them: meshes, colours, and where they stand."""
+"""The geoms of a model as MuJoCo's viewer would draw them: meshes, colours and poses."""
 
 import dataclasses
 from collections.abc import Iterator
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
-from buoyancy_mj.hulls import geoms
+from buoyancy_mj.hulls.geoms import read_geom_mesh
 from buoyancy_mj.meshes.refinement import refine
+from buoyancy_mj.viz.triangles import SmoothMesh, rectangle, smooth_mesh
 
 SHOWN_GROUPS = 3
-"""Geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
+"""Number of geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
 DEFAULT_RGBA = np.array([0.5, 0.5, 0.5, 1.0], np.float32)
-"""Colour of a geom that was given none; only then does its material's show."""
+"""Colour of a geom whose file sets none; only then the colour of its material shows."""
 FINENESS = 12.0
-"""Length of a moving geom over its longest edge: fine enough to show by its vertices what of it is wet."""
+"""Length of a moving geom over its longest edge, so that its vertices show what of it is wet."""
+ENDLESS = 20.0
+"""Half length at which an endless plane is cut off [m]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,66 +30,70 @@ class VisibleGeom:
     body: int
     """Index of its body; 0, the world, for all that does not move."""
     colour: NDArray[np.uint8]
-    """Red, green, blue, alpha (4,), its own or its material's."""
+    """Red, green, blue, alpha (4,), of the geom or of its material."""
     position: NDArray[np.float64]
-    """Origin of its frame in that body (3,) [m]."""
+    """Origin of the geom's frame in that body's frame (3,) [m]."""
     rotation: NDArray[np.float64]
-    """Rotation (3, 3) from its frame to that body's."""
+    """Rotation body_from_geom (3, 3)."""
     vertices: NDArray[np.float64]
-    """Corners in its frame (n, 3) [m], doubled along sharp edges."""
+    """Corners in the geom's frame (n, 3) [m], doubled along sharp edges."""
     faces: NDArray[np.int64]
-    """Their indices (m, 3)."""
+    """Indices of the corners of each triangle (m, 3)."""
     normals: NDArray[np.float64]
     """Unit normals at the corners (n, 3)."""
 
     @property
     def moves(self) -> bool:
-        """Whether it belongs to a body that can move."""
+        """Whether the geom belongs to a body that can move."""
         return self.body != 0
 
 
 def find_visible_geoms(model: mujoco.MjModel) -> Iterator[VisibleGeom]:
-    """Every geom that MuJoCo's viewer would show at first, or all of them if it would show none."""
+    """Find every geom that MuJoCo's viewer would show at first, or all if it would show none."""
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
-    shown = [g for g in range(model.ngeom) if model.geom_group[g] < SHOWN_GROUPS] or list(
-        range(model.ngeom)
-    )
-    for g in shown:
-        material = model.geom_matid[g]
-        rgba = model.geom_rgba[g]
-        if material >= 0 and np.array_equal(rgba, DEFAULT_RGBA):
-            rgba = model.mat_rgba[material]
-        is_plane = model.geom_type[g] == mujoco.mjtGeom.mjGEOM_PLANE
-        arrays = _plane(model.geom_size[g]) if is_plane else geoms.read_geom_mesh(model, g)
-        if arrays is None or rgba[3] == 0.0:
+    geoms = np.flatnonzero(model.geom_group < SHOWN_GROUPS)
+    for geom in map(int, geoms if len(geoms) else range(model.ngeom)):
+        body = int(model.geom_bodyid[geom])
+        moves = model.body_weldid[body] != 0 or model.body_mocapid[body] >= 0
+        rgba = _colour(model, geom)
+        mesh = _mesh(model, geom, fine=moves)
+        if mesh is None or rgba[3] == 0.0:
             continue
-        vertices, faces = arrays
-        body = int(model.geom_bodyid[g])
-        if model.body_weldid[body] or model.body_mocapid[body] >= 0:
-            vertices, faces = refine(
-                vertices, faces, float(np.ptp(vertices, axis=0).max()) / FINENESS
-            )
-        else:
-            body = 0
-        smooth = trimesh.graph.smooth_shade(
-            trimesh.Trimesh(vertices, faces, process=False), angle=0.6
-        )
-        world_from_body = data.xmat[body].reshape(3, 3)
+
+        # what does not move stands in the frame of the world
+        owner = body if moves else 0
+        owner_from_world = data.xmat[owner].reshape(3, 3).T
         yield VisibleGeom(
-            geom=g,
-            body=body,
+            geom=geom,
+            body=owner,
             colour=(255.0 * rgba).astype(np.uint8),
-            position=world_from_body.T @ (data.geom_xpos[g] - data.xpos[body]),
-            rotation=world_from_body.T @ data.geom_xmat[g].reshape(3, 3),
-            vertices=np.asarray(smooth.vertices),
-            faces=np.asarray(smooth.faces),
-            normals=np.asarray(smooth.vertex_normals),
+            position=owner_from_world @ (data.geom_xpos[geom] - data.xpos[owner]),
+            rotation=owner_from_world @ data.geom_xmat[geom].reshape(3, 3),
+            vertices=mesh.vertices,
+            faces=mesh.faces,
+            normals=mesh.normals,
         )
 
 
-def _plane(size: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """A plane as a rectangle; an endless one ends 20 m away."""
-    half = [length if length > 0.0 else 20.0 for length in size[:2]]
-    corners = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
-    return corners * [*half, 0.0], np.array([[0, 1, 2], [0, 2, 3]])
+def _colour(model: mujoco.MjModel, geom: int) -> NDArray[np.float32]:
+    """Red, green, blue, alpha (4,) from 0 to 1, as MuJoCo's viewer chooses them."""
+    rgba: NDArray[np.float32] = model.geom_rgba[geom]
+    material = model.geom_matid[geom]
+    if material >= 0 and np.array_equal(rgba, DEFAULT_RGBA):
+        rgba = model.mat_rgba[material]
+    return rgba
+
+
+def _mesh(model: mujoco.MjModel, geom: int, *, fine: bool) -> SmoothMesh | None:
+    """The triangles of a geom in its frame, refined where asked; None if it has none."""
+    is_plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
+    half = [side if side > 0.0 else ENDLESS for side in model.geom_size[geom, :2]]
+    arrays = rectangle(half) if is_plane else read_geom_mesh(model, geom)
+    if arrays is None:
+        return None
+    vertices, faces = arrays
+    if fine:
+        longest = float(np.ptp(vertices, axis=0).max())
+        vertices, faces = refine(vertices, faces, longest / FINENESS)
+    return smooth_mesh(vertices, faces)

@@ -1,0 +1,87 @@
+"""How the Rerun viewer is laid out for a run and for an inspection."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import rerun.blueprint as rrb
+from numpy.typing import NDArray
+
+from buoyancy_mj.viz.plots import PLOTS, TIMELINE
+
+
+def run_blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blueprint:
+    """Lay out a run: the world and texts on the left, plots on the right, playing at once.
+
+    Args:
+        title: name of the view of the world.
+        look_at: point at which it looks (3,) [m].
+        size: length of the vehicle [m], a few of which lie between the eye and that point.
+    """
+    world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
+    texts = rrb.Tabs(
+        rrb.TextDocumentView(origin="summary", name="summary"),
+        rrb.TextDocumentView(origin="scene", name="scene"),
+    )
+    plots = [_plot_view(name, contents) for name, contents in PLOTS.items()]
+    return rrb.Blueprint(
+        rrb.Horizontal(
+            rrb.Vertical(world, texts, row_shares=[4, 1]),
+            rrb.Vertical(*plots),
+            column_shares=[3, 2],
+        ),
+        rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
+        *_side_panels(),
+    )
+
+
+def inspection_blueprint(
+    title: str, look_at: NDArray[np.float64], size: float, *, righting: bool
+) -> rrb.Blueprint:
+    """Lay out an inspection: the vessel on the left, its report and righting arms on the right.
+
+    Args:
+        title: name of the view of the vessel.
+        look_at: point at which it looks (3,) [m].
+        size: length of the vessel [m].
+        righting: whether there are righting arms.
+    """
+    world = _world_view(title, look_at, look_at + size * np.array([-0.6, -1.3, 0.5]))
+    report = rrb.TextDocumentView(origin="report", name="report")
+    arms = rrb.TimeSeriesView(origin="righting", name="GZ [m] over heel [degrees]")
+    beside = rrb.Vertical(report, arms, row_shares=[3, 2]) if righting else rrb.Vertical(report)
+    return rrb.Blueprint(
+        rrb.Horizontal(world, beside, column_shares=[3, 2]),
+        rrb.TimePanel(state="hidden"),
+        *_side_panels(),
+    )
+
+
+def _world_view(
+    title: str, look_at: NDArray[np.float64], eye: NDArray[np.float64]
+) -> rrb.Spatial3DView:
+    """A view in 3D from `eye` towards `look_at`, (3,) [m]."""
+    return rrb.Spatial3DView(
+        origin="world",
+        name=title,
+        background=rrb.Background(color=[24, 30, 40]),
+        line_grid=rrb.LineGrid3D(visible=False),
+        eye_controls=rrb.EyeControls3D(position=eye, look_target=look_at, eye_up=[0, 0, 1]),
+    )
+
+
+def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
+    """A plot of the entities in `contents`; a leading '-' leaves an entity out."""
+    return rrb.TimeSeriesView(
+        origin="plots",
+        contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
+        name=title,
+        # a legend of all hulls would cover their lines
+        plot_legend=rrb.PlotLegend(
+            corner=rrb.Corner2D.RightTop, visible="/plots/volume/**" not in contents
+        ),
+    )
+
+
+def _side_panels() -> tuple[rrb.BlueprintPanel, rrb.SelectionPanel]:
+    """The viewer's own panels, out of the way."""
+    return rrb.BlueprintPanel(state="collapsed"), rrb.SelectionPanel(state="collapsed")

@@ -1,0 +1,121 @@
+"""`BodyDrawing`: the bodies of a run in its recording, what of them is wet, and their waterline."""
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from buoyancy_mj.hulls.names import body_name, geom_name
+from buoyancy_mj.scenes.frames import Frame
+from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
+from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
+
+WET = np.array([25, 90, 190])
+"""Colour that water adds to a wet geom."""
+WATERLINE = (255, 255, 255)
+
+
+class BodyDrawing:
+    """The bodies of a run.
+
+    Args:
+        simulation: the run.
+        size: length of the vehicle [m].
+    """
+
+    def __init__(self, simulation: Simulation, size: float) -> None:
+        self.wet: dict[int, NDArray[np.bool_]] = {}
+        """Which vertices (n,) of each moving geom are wet, by its index, as last drawn."""
+        self._simulation = simulation
+        self._size = size
+        self._geoms = list(find_visible_geoms(simulation.model))
+        self._moving = [geom for geom in self._geoms if geom.moves]
+
+    def draw_static(self, log: Log) -> None:
+        """Draw the meshes of all geoms in the frames of their bodies."""
+        for geom in self._geoms:
+            entity = self._geom_entity(geom)
+            mesh = rr.Mesh3D(
+                vertex_positions=geom.vertices,
+                triangle_indices=geom.faces,
+                vertex_normals=geom.normals,
+            )
+            pose = rr.Transform3D(translation=geom.position, mat3x3=geom.rotation)
+            log(entity, mesh, static=True)
+            log(entity, pose, static=True)
+            if not geom.moves:
+                log(entity, rr.Mesh3D.from_fields(albedo_factor=geom.colour), static=True)
+
+    def draw(self, log: Log, frame: Frame) -> None:
+        """Draw one frame: the poses of bodies, what of them is wet, and the waterline."""
+        data = frame.data
+        for body in sorted({geom.body for geom in self._moving}):
+            rotation = data.xmat[body].reshape(3, 3)
+            pose = rr.Transform3D(translation=data.xpos[body], mat3x3=rotation)
+            log(self._body_entity(body), pose)
+        self._draw_wetness(log, frame)
+        self._draw_waterline(log, frame)
+
+    def _draw_wetness(self, log: Log, frame: Frame) -> None:
+        """Colour the geoms of which other vertices are wet than in the last frame."""
+        uncut = self._uncut_hulls(frame)
+        for geom in self._moving:
+            if geom.geom in uncut:
+                wet = np.full(len(geom.vertices), uncut[geom.geom])
+            else:
+                wet = self._find_wet_vertices(geom, frame)
+            if geom.geom in self.wet and np.array_equal(wet, self.wet[geom.geom]):
+                continue
+            self.wet[geom.geom] = wet
+            water = np.append(WET, geom.colour[3])
+            dyed = (0.45 * geom.colour + 0.55 * water).astype(np.uint8)
+            colours = np.where(wet[:, None], dyed, geom.colour)
+            log(self._geom_entity(geom), rr.Mesh3D.from_fields(vertex_colors=colours))
+
+    def _uncut_hulls(self, frame: Frame) -> dict[int, bool]:
+        """Whether each geom that the surface does not cut is wet, by its index."""
+        hulls = self._simulation.buoyancy.hulls
+        loads = frame.loads
+        return {
+            hull.geom: bool(volume > 0.0)
+            for hull, volume, waterplane in zip(
+                hulls, loads.hull.volume, loads.waterplane_area, strict=True
+            )
+            if waterplane == 0.0
+        }
+
+    def _find_wet_vertices(self, geom: VisibleGeom, frame: Frame) -> NDArray[np.bool_]:
+        """Which vertices (n,) of a geom are under water."""
+        world_from_geom = frame.data.geom_xmat[geom.geom].reshape(3, 3)
+        points = geom.vertices @ world_from_geom.T + frame.data.geom_xpos[geom.geom]
+        wet: NDArray[np.bool_] = self._simulation.scene.water.depth(points, frame.time) > 0.0
+        return wet
+
+    def _draw_waterline(self, log: Log, frame: Frame) -> None:
+        """Draw the waterline on all hulls that the surface cuts."""
+        data = frame.data
+        water = self._simulation.scene.water
+        hulls = self._simulation.buoyancy.hulls
+        lines = [
+            cut_wetted_surface(
+                hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time
+            )[1]
+            for hull, waterplane in zip(hulls, frame.loads.waterplane_area, strict=True)
+            # NaN from a method that does not know the area
+            if waterplane != 0.0
+        ]
+        strips = np.concatenate([np.zeros((0, 2, 3)), *lines])
+        radius = 0.003 * self._size
+        log("world/waterline", rr.LineStrips3D(strips, colors=[WATERLINE], radii=[radius]))
+
+    def _body_entity(self, body: int) -> str:
+        """The entity of a body."""
+        if body == 0:
+            return "world/environment"
+        return f"world/bodies/{rr.escape_entity_path_part(body_name(self._simulation.model, body))}"
+
+    def _geom_entity(self, geom: VisibleGeom) -> str:
+        """The entity of a geom."""
+        name = geom_name(self._simulation.model, geom.geom)
+        return f"{self._body_entity(geom.body)}/{rr.escape_entity_path_part(name)}"

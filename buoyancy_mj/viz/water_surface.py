@@ -1,0 +1,69 @@
+"""`SurfaceDrawing`: the water's surface around the vehicle in a recording."""
+
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from buoyancy_mj.scenes.frames import Frame
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.viz.log import Log
+
+CELLS = 24
+"""Number of cells along each side of the surface."""
+WIDTH = 4.0
+"""Length of a side over the length of the vehicle."""
+STRIDE = 4
+"""Number of cells by which the surface moves when the vehicle leaves its middle."""
+WATER = (70, 150, 215, 45)
+GRID = (190, 225, 250, 45)
+
+
+class SurfaceDrawing:
+    """The water's surface, a square of cells that follows the vehicle.
+
+    Args:
+        water: the sea.
+        size: length of the vehicle [m].
+    """
+
+    def __init__(self, water: Water, size: float) -> None:
+        self._water = water
+        self._size = size
+        self._cell = WIDTH * size / CELLS
+        self._centre: NDArray[np.float64] | None = None
+
+    def draw_static(self, log: Log) -> None:
+        """Draw the triangles and the colour of the surface."""
+        row = np.arange(CELLS)
+        a = (row[:, None] * (CELLS + 1) + row).ravel()
+        b = a + CELLS + 1
+        faces = np.vstack([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
+        mesh = rr.Mesh3D.from_fields(triangle_indices=faces, albedo_factor=WATER)
+        log("world/water", mesh, static=True)
+
+    def draw(self, log: Log, frame: Frame) -> None:
+        """Draw one frame; still water only when the square moves."""
+        stride = STRIDE * self._cell
+        centre = np.round(frame.centre_of_mass[:2] / stride) * stride
+        is_still = not self._water.waves
+        if is_still and self._centre is not None and np.array_equal(centre, self._centre):
+            return
+        self._centre = centre
+
+        # corners of the cells, and normals by their slopes
+        along = (np.arange(CELLS + 1) - 0.5 * CELLS) * self._cell
+        x, y = np.meshgrid(centre[0] + along, centre[1] + along, indexing="ij")
+        z = self._water.elevation(x, y, frame.time)
+        slope_x, slope_y = np.gradient(z, self._cell)
+        corners = np.stack([x, y, z], axis=-1)
+        normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1)
+        mesh = rr.Mesh3D.from_fields(
+            vertex_positions=corners.reshape(-1, 3), vertex_normals=normals.reshape(-1, 3)
+        )
+        log("world/water", mesh)
+
+        # a grid over every second corner
+        lattice = corners[::2, ::2]
+        lines = np.concatenate([lattice, lattice.swapaxes(0, 1)])
+        radius = 0.0015 * self._size
+        log("world/water/grid", rr.LineStrips3D(lines, colors=[GRID], radii=[radius]))
