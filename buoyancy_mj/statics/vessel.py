@@ -13,7 +13,7 @@ from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
-from buoyancy_mj.kernels import clip
+from buoyancy_mj.kernels import clip, waterplane
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import PackedHulls
@@ -120,7 +120,11 @@ class Vessel:
             held = volumes > 0.0
             arm = volumes[held] @ (wet[held, clip.CENTROID] - origin) / volume
         cut = self._packed.waterplanes(places, turns, origin)
-        extents = np.concatenate([cut[:, 6:8].min(axis=0), cut[:, 8:10].max(axis=0)])
+        lowest, highest = (
+            cut[:, waterplane.LOWEST].min(axis=0),
+            cut[:, waterplane.HIGHEST].max(axis=0),
+        )
+        extents = np.concatenate([lowest, highest])
         return Afloat(
             self,
             origin,
@@ -128,7 +132,7 @@ class Vessel:
             volume,
             arm,
             float(wet[:, clip.WETTED_AREA].sum()),
-            cut[:, :6].sum(axis=0),
+            cut[:, waterplane.INTEGRALS].sum(axis=0),
             extents,
         )
 
