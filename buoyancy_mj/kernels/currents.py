@@ -1,41 +1,46 @@
-"""A current as rows of (depth or time, velocity (3), 0 or 1 for which): straight between rows, held beyond them."""
+"""A current as rows of numbers at depths or at times: straight between rows, held beyond them."""
 
 from numba import njit
+
+PLACE, VELOCITY, TIMED = 0, 1, 4
+"""Columns of a row: a depth [m] or a time [s]; the velocity (3) there [m/s]; and 0 for depths, 1 for times."""
 
 
 @njit(cache=True, error_model="numpy")
 def set_current(rows, depth, time, out):
-    """Velocity [m/s] of the current at a depth [m] under the still level and a time [s], written to `out` (3,)."""
-    at, share = _between(rows, time if rows[0, 4] != 0.0 else depth)
+    """Write the velocity [m/s] of the current at a depth [m] under the still level and a time [s] to `out` (3,)."""
+    at, share = _between(rows, time if rows[0, TIMED] != 0.0 else depth)
     for c in range(3):
-        out[c] = rows[at, 1 + c]
+        out[c] = rows[at, VELOCITY + c]
         if share > 0.0:
-            out[c] += share * (rows[at + 1, 1 + c] - rows[at, 1 + c])
+            out[c] += share * (rows[at + 1, VELOCITY + c] - rows[at, VELOCITY + c])
 
 
 @njit(cache=True, error_model="numpy")
 def set_rate(rows, time, out):
-    """How fast it grows with time [m/s^2], written to `out` (3,)."""
+    """Write how fast the current grows with time [m/s^2] to `out` (3,)."""
     out[:] = 0.0
-    if rows[0, 4] == 0.0 or not rows[0, 0] <= time < rows[rows.shape[0] - 1, 0]:
+    if rows[0, TIMED] == 0.0 or not rows[0, PLACE] <= time < rows[rows.shape[0] - 1, PLACE]:
         return
     at, _ = _between(rows, time)
     for c in range(3):
-        out[c] = (rows[at + 1, 1 + c] - rows[at, 1 + c]) / (rows[at + 1, 0] - rows[at, 0])
+        out[c] = (rows[at + 1, VELOCITY + c] - rows[at, VELOCITY + c]) / (
+            rows[at + 1, PLACE] - rows[at, PLACE]
+        )
 
 
 @njit(cache=True, error_model="numpy")
 def _between(rows, place):
     """The row before a place, and how far the place is to the next; 0 beyond the ends."""
     low, high = 0, rows.shape[0] - 1
-    if high == 0 or not place > rows[0, 0]:
+    if high == 0 or not place > rows[0, PLACE]:
         return 0, 0.0
-    if place >= rows[high, 0]:
+    if place >= rows[high, PLACE]:
         return high, 0.0
     while high - low > 1:
         middle = (low + high) // 2
-        if rows[middle, 0] <= place:
+        if rows[middle, PLACE] <= place:
             low = middle
         else:
             high = middle
-    return low, (place - rows[low, 0]) / (rows[high, 0] - rows[low, 0])
+    return low, (place - rows[low, PLACE]) / (rows[high, PLACE] - rows[low, PLACE])

@@ -7,8 +7,16 @@ import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.clip import CX, VOLUME, WATERPLANE_AREA
 from buoyancy_mj.kernels.currents import set_current
+from buoyancy_mj.kernels.vectors import difference, rotate, triple
 from buoyancy_mj.kernels.waves import add_velocity
+
+HEAVE, ROLL, PITCH, WATERPLANE = range(4)
+"""Columns of `DampingArrays.radiation`: force [N s/m] and torques [N m s] per velocity, and the waterplane [m^2] at which
+they are so."""
+LINEAR, QUADRATIC = 0, 36
+"""Columns of `DampingArrays.matrices` at which the two matrices begin."""
 
 
 class DampingArrays(NamedTuple):
@@ -27,7 +35,7 @@ class DampingArrays(NamedTuple):
     matrices: Annotated[Doubles, ("n", 72)]
     """Those matrices, linear and quadratic, row by row."""
     radiation: Annotated[Doubles, ("n", 4)]
-    """Force [N s/m] and torques [N m s] per velocity of heave, roll and pitch, and the waterplane [m^2] of them."""
+    """Damping by the waves that a body makes, in columns `HEAVE` to `WATERPLANE`."""
     panels: Annotated[Doubles, ("n", 5)]
     """Drag by panels, in columns `panels.LEADING` to `panels.DENSITY`; no rows if no body has it."""
     members: Annotated[Words, ("m",)]
@@ -62,33 +70,26 @@ def add_drag(
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
     for n in range(damping.bodies.shape[0]):
         b = damping.bodies[n]
-        volume = centres[b, 0]
+        volume = centres[b, VOLUME]
         if not volume > 0.0:
             continue
         wet = min(volume / damping.volumes[n], 1.0)
         r = bodies.xmat[b]
-        whole = damping.coupled[n] != 0
-        at = bodies.xpos[b] if whole else centres[b, 1:]
-        set_current(sea.current, sea.level - centres[b, 3], time, water)
-        add_velocity(
-            sea.waves, centres[b, 1], centres[b, 2], centres[b, 3] - sea.level, time, water
-        )
+        coupled = damping.coupled[n] != 0
+        at = bodies.xpos[b] if coupled else centres[b, CX:]
+
+        # the velocity relative to the water at the centroid
+        x, y, z = triple(centres, b, CX)
+        set_current(sea.current, sea.level - z, time, water)
+        add_velocity(sea.waves, x, y, z - sea.level, time, water)
         relative_velocity(bodies, b, at, water, v)
+
+        # the force against it, held
         mass, inertias = rigid_body(damping, bodies, n)
         m[:3] = _apparent(mass, inertias, at, bodies.xipos[b])
         m[3], m[4], m[5] = inertias
-        if whole:
-            norm = 0.0
-            for i in range(6):
-                for j in range(6):
-                    d = wet * (
-                        damping.matrices[n, 6 * i + j]
-                        + damping.matrices[n, 36 + 6 * i + j] * abs(v[j])
-                    )
-                    if d != 0.0:
-                        norm += d * d / (m[i] * m[j])
-            norm = math.sqrt(norm)
-            held = wet * (rate / norm if norm > rate else 1.0)
+        if coupled:
+            held = wet * _held(damping.matrices[n], wet, v, m, rate)
             f = _product(damping.matrices[n], v, held)
         else:
             for i in range(6):
@@ -96,6 +97,25 @@ def add_drag(
                 m[i] = -min(d, m[i] * rate) * v[i]
             f = m[0], m[1], m[2], m[3], m[4], m[5]
         _add(r, at, bodies.xipos[b], f, out[b])
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _held(matrices, wet, v, masses, rate):
+    """By how much damping by matrices is held, for the norm of it, scaled by masses (6,), to stay below a rate."""
+    norm = 0.0
+    for i in range(6):
+        for j in range(6):
+            d = wet * _coefficient(matrices, i, j, v)
+            if d != 0.0:
+                norm += d * d / (masses[i] * masses[j])
+    norm = math.sqrt(norm)
+    return rate / norm if norm > rate else 1.0
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _coefficient(matrices, i, j, v):
+    """Damping (72,), linear and quadratic, of velocity j on force i."""
+    return matrices[LINEAR + 6 * i + j] + matrices[QUADRATIC + 6 * i + j] * abs(v[j])
 
 
 @njit(cache=True, error_model="numpy")
@@ -110,46 +130,46 @@ def add_radiation(
     centres,
     out,
 ):
-    """Add what the waves that a body makes take from its heave, roll and pitch, scaled with its waterplane.
+    """Add the damping of heave, roll and pitch by the waves that a body makes, scaled with its waterplane.
 
     At the centroid of what is wet, on the velocity there relative to the waves, held as for `add_drag`.
     """
     water, v = np.empty(3), np.empty(6)
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
     for n in range(damping.bodies.shape[0]):
-        b = damping.bodies[n]
-        if not centres[b, 0] > 0.0 or not damping.radiation[n, 3] > 0.0:
+        b, radiation = damping.bodies[n], damping.radiation[n]
+        if not centres[b, VOLUME] > 0.0 or not radiation[WATERPLANE] > 0.0:
             continue
         area = 0.0
         for h in range(owners.shape[0]):
             if owners[h] == b:
-                area += wet[h, 5]
-        share = min(max(area / damping.radiation[n, 3], 0.0), 1.0)
+                area += wet[h, WATERPLANE_AREA]
+        share = min(max(area / radiation[WATERPLANE], 0.0), 1.0)
         if share == 0.0:
             continue
-        r, at = bodies.xmat[b], centres[b, 1:]
+
+        # the velocity relative to the waves
+        r, at = bodies.xmat[b], centres[b, CX:]
         water[:] = 0.0
         add_velocity(sea.waves, at[0], at[1], at[2] - sea.level, time, water)
         relative_velocity(bodies, b, at, water, v)
-        mass, inertias = rigid_body(damping, bodies, n)
         heave = r[6] * v[0] + r[7] * v[1] + r[8] * v[2]
-        up = (
-            -min(
-                share * damping.radiation[n, 0],
-                _apparent(mass, inertias, at, bodies.xipos[b]) * rate,
-            )
-            * heave
-        )
-        roll = -min(share * damping.radiation[n, 1], inertias[0] * rate) * v[3]
-        pitch = -min(share * damping.radiation[n, 2], inertias[1] * rate) * v[4]
-        _add(r, at, bodies.xipos[b], (up * r[6], up * r[7], up * r[8], roll, pitch, 0.0), out[b])
+
+        # the force against it, held
+        mass, inertias = rigid_body(damping, bodies, n)
+        apparent = _apparent(mass, inertias, at, bodies.xipos[b])
+        up = -min(share * radiation[HEAVE], apparent * rate) * heave
+        roll = -min(share * radiation[ROLL], inertias[0] * rate) * v[3]
+        pitch = -min(share * radiation[PITCH], inertias[1] * rate) * v[4]
+        f = up * r[6], up * r[7], up * r[8], roll, pitch, 0.0
+        _add(r, at, bodies.xipos[b], f, out[b])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def relative_velocity(bodies, b, at, water, out):
     """Velocity of a body at a place, relative to the water, and its rates, along its axes; written to `out` (6,)."""
     r, cvel, com = bodies.xmat[b], bodies.cvel[b], bodies.subtree_com[bodies.body_rootid[b]]
-    x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
+    x, y, z = difference(at, com)
     ux = cvel[3] + cvel[1] * z - cvel[2] * y - water[0]
     uy = cvel[4] + cvel[2] * x - cvel[0] * z - water[1]
     uz = cvel[5] + cvel[0] * y - cvel[1] * x - water[2]
@@ -161,7 +181,7 @@ def relative_velocity(bodies, b, at, water, out):
 @njit(cache=True, error_model="numpy", inline="always")
 def _apparent(mass, inertias, at, com):
     """The least mass that a body opposes to a force at a place; 0 without inertia, about which MuJoCo complains itself."""
-    x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
+    x, y, z = difference(at, com)
     least = min(inertias[0], inertias[1], inertias[2])
     opposing = least + mass * (x * x + y * y + z * z)
     return mass * least / opposing if opposing != 0.0 else 0.0
@@ -180,22 +200,22 @@ def _product(matrices, v, held):
 def _row(matrices, i, v):
     total = 0.0
     for j in range(6):
-        total += (matrices[6 * i + j] + matrices[36 + 6 * i + j] * abs(v[j])) * v[j]
+        total += _coefficient(matrices, i, j, v) * v[j]
     return total
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add(r, at, com, f, out):
     """Add a wrench along the axes r, that acts at a place, to `out` (6,) about `com`, world frame."""
-    fx, fy = r[0] * f[0] + r[1] * f[1] + r[2] * f[2], r[3] * f[0] + r[4] * f[1] + r[5] * f[2]
-    fz = r[6] * f[0] + r[7] * f[1] + r[8] * f[2]
-    x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
+    fx, fy, fz = rotate(r, f[0], f[1], f[2])
+    tx, ty, tz = rotate(r, f[3], f[4], f[5])
+    x, y, z = difference(at, com)
     out[0] += fx
     out[1] += fy
     out[2] += fz
-    out[3] += r[0] * f[3] + r[1] * f[4] + r[2] * f[5] + y * fz - z * fy
-    out[4] += r[3] * f[3] + r[4] * f[4] + r[5] * f[5] + z * fx - x * fz
-    out[5] += r[6] * f[3] + r[7] * f[4] + r[8] * f[5] + x * fy - y * fx
+    out[3] += tx + y * fz - z * fy
+    out[4] += ty + z * fx - x * fz
+    out[5] += tz + x * fy - y * fx
 
 
 @njit(cache=True, error_model="numpy")
@@ -209,7 +229,10 @@ def rigid_body(damping, bodies, n):
     mass = x = y = z = 0.0
     for b in members:
         m = bodies.body_mass[b]
-        mass, x, y, z = mass + m, x + m * xipos[b, 0], y + m * xipos[b, 1], z + m * xipos[b, 2]
+        mass += m
+        x += m * xipos[b, 0]
+        y += m * xipos[b, 1]
+        z += m * xipos[b, 2]
     if not mass > 0.0:
         return 0.0, (0.0, 0.0, 0.0)
     x, y, z = x / mass, y / mass, z / mass

@@ -5,15 +5,18 @@ import math
 import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels.clip import placed
+from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.clip import CX, CZ, VOLUME
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.damping import relative_velocity, rigid_body
-from buoyancy_mj.kernels.hulls import BOX
+from buoyancy_mj.kernels.hulls import WHOLE_MIDDLE
+from buoyancy_mj.kernels.triangles import lone_corner, turn
+from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import add_velocity, tangent
 
 LEADING, TRAILING, LENGTH, VISCOSITY, DENSITY = range(5)
-"""Columns of `DampingArrays.panels`: drag coefficients of faces that lead and that trail, length of the body [m], kinematic
-viscosity [m^2/s], and density [kg/m^3], 0 for a body without panels."""
+"""Columns of `DampingArrays.panels`: drag coefficients of faces that lead and that trail, length of the body [m],
+kinematic viscosity [m^2/s], and density [kg/m^3], 0 for a body without panels."""
 LEAST_REYNOLDS = 1e4
 """Below it the line of the ITTC is taken no further: flow there is not turbulent."""
 
@@ -39,116 +42,120 @@ def add_panels(
     the middle of the hull. All is held so that its power stops no more than the motion there is.
     """
     water, v, f = np.empty(3), np.empty(6), np.empty(6)
-    rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    level, waves, panels = sea.level, sea.waves, damping.panels
-    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
     for n in range(damping.bodies.shape[0]):
-        density = panels[n, DENSITY]
-        if not density > 0.0:
+        if not damping.panels[n, DENSITY] > 0.0:
             continue
         b = damping.bodies[n]
-        r, at, spin = bodies.xmat[b], bodies.xipos[b], bodies.cvel[b]
         f[:] = 0.0
         water[:] = 0.0
-        relative_velocity(bodies, b, at, water, v)
-        vx, vy, vz = placed((0.0, 0.0, 0.0), r, v[0], v[1], v[2])
+        relative_velocity(bodies, b, bodies.xipos[b], water, v)
+        velocity = rotate(bodies.xmat[b], v[0], v[1], v[2])
+
+        # each hull of the body, in the flow at its own centroid
         fastest = -1.0
         for h in range(owners.shape[0]):
-            if owners[h] != b or not wet[h, 0] > 0.0:
+            if owners[h] != b or not wet[h, VOLUME] > 0.0:
                 continue
-            origin, turn = geoms.geom_xpos[hulls.frames[h]], geoms.geom_xmat[hulls.frames[h]]
-            x, y, _ = placed(
-                origin, turn, hulls.whole[h, BOX], hulls.whole[h, BOX + 1], hulls.whole[h, BOX + 2]
+            x, y, z = triple(wet, h, CX)
+            set_current(sea.current, sea.level - wet[h, CZ], time, water)
+            add_velocity(sea.waves, x, y, z - sea.level, time, water)
+            speed = math.sqrt(
+                (velocity[0] - water[0]) ** 2
+                + (velocity[1] - water[1]) ** 2
+                + (velocity[2] - water[2]) ** 2
             )
-            eta, gx, gy = tangent(waves, x, y, time)
-            set_current(sea.current, level - wet[h, 3], time, water)
-            add_velocity(waves, wet[h, 1], wet[h, 2], wet[h, 3] - level, time, water)
-            speed = math.sqrt((vx - water[0]) ** 2 + (vy - water[1]) ** 2 + (vz - water[2]) ** 2)
             fastest = max(fastest, speed)
-            reynolds = max(speed * panels[n, LENGTH] / panels[n, VISCOSITY], LEAST_REYNOLDS)
-            friction = 0.075 / (math.log10(reynolds) - 2.0) ** 2
-            i = hulls.nodes[h]
-            for t in range(hulls.spans[i, 0], hulls.spans[i, 1]):
-                px, py, pz = placed(
-                    origin,
-                    turn,
-                    vertices[faces[t, 0], 0],
-                    vertices[faces[t, 0], 1],
-                    vertices[faces[t, 0], 2],
-                )
-                qx, qy, qz = placed(
-                    origin,
-                    turn,
-                    vertices[faces[t, 1], 0],
-                    vertices[faces[t, 1], 1],
-                    vertices[faces[t, 1], 2],
-                )
-                ox, oy, oz = placed(
-                    origin,
-                    turn,
-                    vertices[faces[t, 2], 0],
-                    vertices[faces[t, 2], 1],
-                    vertices[faces[t, 2], 2],
-                )
-                dp = level + eta + gx * (px - x) + gy * (py - y) - pz
-                dq = level + eta + gx * (qx - x) + gy * (qy - y) - qz
-                do = level + eta + gx * (ox - x) + gy * (oy - y) - oz
-                share = _wet_share(dp, dq, do)
-                nx, ny, nz = placed((0.0, 0.0, 0.0), turn, areas[t, 0], areas[t, 1], areas[t, 2])
-                size = math.sqrt(nx * nx + ny * ny + nz * nz)
-                if share == 0.0 or size == 0.0:
-                    continue
-                nx, ny, nz = nx / size, ny / size, nz / size
-                cx, cy, cz = (
-                    (px + qx + ox) / 3.0 - at[0],
-                    (py + qy + oy) / 3.0 - at[1],
-                    (pz + qz + oz) / 3.0 - at[2],
-                )
-                wx, wy, wz = spin[0], spin[1], spin[2]
-                ux = vx + wy * cz - wz * cy - water[0]
-                uy = vy + wz * cx - wx * cz - water[1]
-                uz = vz + wx * cy - wy * cx - water[2]
-                into = ux * nx + uy * ny + uz * nz
-                tx, ty, tz = ux - into * nx, uy - into * ny, uz - into * nz
-                along = (
-                    0.5 * density * size * share * friction * math.sqrt(tx * tx + ty * ty + tz * tz)
-                )
-                square = (
-                    0.5
-                    * density
-                    * size
-                    * share
-                    * (panels[n, LEADING] if into > 0.0 else panels[n, TRAILING])
-                    * abs(into)
-                    * into
-                )
-                fx, fy, fz = (
-                    -along * tx - square * nx,
-                    -along * ty - square * ny,
-                    -along * tz - square * nz,
-                )
-                f[0], f[1], f[2] = f[0] + fx, f[1] + fy, f[2] + fz
-                f[3], f[4], f[5] = (
-                    f[3] + cy * fz - cz * fy,
-                    f[4] + cz * fx - cx * fz,
-                    f[5] + cx * fy - cy * fx,
-                )
-        if fastest < 0.0:
+            reynolds = speed * damping.panels[n, LENGTH] / damping.panels[n, VISCOSITY]
+            friction = 0.075 / (math.log10(max(reynolds, LEAST_REYNOLDS)) - 2.0) ** 2
+            _add_hull(
+                damping.panels[n],
+                hulls,
+                h,
+                bodies,
+                b,
+                geoms,
+                sea,
+                time,
+                water,
+                velocity,
+                friction,
+                f,
+            )
+        if fastest >= 0.0:
+            held = _held(damping, bodies, n, timestep, fastest, f)
+            for c in range(6):
+                out[b, c] += held * f[c]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add_hull(panels, hulls, h, bodies, b, geoms, sea, time, water, velocity, friction, f):
+    """Add force, and torque about the centre of mass of the body, on the wet triangles of a hull to `f`."""
+    origin, r = geoms.geom_xpos[hulls.frames[h]], geoms.geom_xmat[hulls.frames[h]]
+    at, spin, node = bodies.xipos[b], bodies.cvel[b], hulls.nodes[h]
+    c0, c1, c2 = triple(hulls.whole, h, WHOLE_MIDDLE)
+    x, y, _ = place(origin, r, c0, c1, c2)
+    eta, gx, gy = tangent(sea.waves, x, y, time)
+    for t in range(hulls.spans[node, tree.FIRST_FACE], hulls.spans[node, tree.END_FACE]):
+        # what of the triangle is wet
+        px, py, pz = _corner(hulls, t, 0, origin, r)
+        qx, qy, qz = _corner(hulls, t, 1, origin, r)
+        ox, oy, oz = _corner(hulls, t, 2, origin, r)
+        dp = sea.level + eta + gx * (px - x) + gy * (py - y) - pz
+        dq = sea.level + eta + gx * (qx - x) + gy * (qy - y) - qz
+        do = sea.level + eta + gx * (ox - x) + gy * (oy - y) - oz
+        share = _wet_share(dp, dq, do)
+        nx, ny, nz = rotate(r, hulls.areas[t, 0], hulls.areas[t, 1], hulls.areas[t, 2])
+        size = math.sqrt(nx * nx + ny * ny + nz * nz)
+        if share == 0.0 or size == 0.0:
             continue
-        # its power over a timestep, beside what the body's motion relative to the water holds
-        mass, inertias = rigid_body(damping, bodies, n)
-        least = min(inertias[0], inertias[1], inertias[2])
-        push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
-        twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
-        motion = mass * fastest * fastest + least * (spin[0] ** 2 + spin[1] ** 2 + spin[2] ** 2)
-        change = (
-            (push / mass + twist / least) / (rate * rate)
-            if least > 0.0 and mass > 0.0
-            else math.inf
-        )
-        held = math.sqrt(motion / change) if change > motion else 1.0
-        for c in range(6):
-            out[b, c] += held * f[c]
+
+        # the flow past its middle, along the normal and along the face
+        nx, ny, nz = nx / size, ny / size, nz / size
+        cx = (px + qx + ox) / 3.0 - at[0]
+        cy = (py + qy + oy) / 3.0 - at[1]
+        cz = (pz + qz + oz) / 3.0 - at[2]
+        wx, wy, wz = spin[0], spin[1], spin[2]
+        ux = velocity[0] + wy * cz - wz * cy - water[0]
+        uy = velocity[1] + wz * cx - wx * cz - water[1]
+        uz = velocity[2] + wx * cy - wy * cx - water[2]
+        into = ux * nx + uy * ny + uz * nz
+        tx, ty, tz = ux - into * nx, uy - into * ny, uz - into * nz
+
+        # friction, and pressure
+        wet_half = 0.5 * panels[DENSITY] * size * share
+        along = wet_half * friction * math.sqrt(tx * tx + ty * ty + tz * tz)
+        coefficient = panels[LEADING] if into > 0.0 else panels[TRAILING]
+        square = wet_half * coefficient * abs(into) * into
+        fx, fy, fz = -along * tx - square * nx, -along * ty - square * ny, -along * tz - square * nz
+        f[0] += fx
+        f[1] += fy
+        f[2] += fz
+        f[3] = f[3] + cy * fz - cz * fy
+        f[4] = f[4] + cz * fx - cx * fz
+        f[5] = f[5] + cx * fy - cy * fx
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _held(damping, bodies, n, timestep, fastest, f):
+    """By how much `f` is held: its power over a timestep, beside what the body's motion relative to the water holds."""
+    rate = 1.0 / timestep if timestep > 0.0 else math.inf
+    spin = bodies.cvel[damping.bodies[n]]
+    mass, inertias = rigid_body(damping, bodies, n)
+    least = min(inertias[0], inertias[1], inertias[2])
+    push = f[0] * f[0] + f[1] * f[1] + f[2] * f[2]
+    twist = f[3] * f[3] + f[4] * f[4] + f[5] * f[5]
+    motion = mass * fastest * fastest + least * (spin[0] ** 2 + spin[1] ** 2 + spin[2] ** 2)
+    change = math.inf
+    if least > 0.0 and mass > 0.0:
+        change = (push / mass + twist / least) / (rate * rate)
+    return math.sqrt(motion / change) if change > motion else 1.0
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _corner(hulls, t, k, origin, r):
+    """Corner k of a triangle, in the world."""
+    x, y, z = triple(hulls.vertices, hulls.faces[t, k], 0)
+    return place(origin, r, x, y, z)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -158,9 +165,6 @@ def _wet_share(p, q, o):
     if count == 0 or count == 3:
         return 0.0 if count == 0 else 1.0
     # turn it so that the first corner is alone on its side
-    if (q > 0.0) == (count == 1) and (p > 0.0) != (count == 1):
-        p, q = q, p
-    elif (o > 0.0) == (count == 1) and (p > 0.0) != (count == 1):
-        p, o = o, p
+    p, q, o = turn(lone_corner(p > 0.0, q > 0.0, o > 0.0), p, q, o)
     cut = p / (p - q) * (p / (p - o))
     return cut if count == 1 else 1.0 - cut

@@ -72,46 +72,58 @@ def misenclosed(vertices, faces, count):
     # a grid slightly off the bounds, so that rays miss edges aligned with it
     step = (high - low) / (count - 0.3819660113)
     low = low - 0.1180339887 * step
-    x, y, z = vertices[:, 0], vertices[:, 1], vertices[:, 2]
+
     # count the hits of each ray, then list them
     starts = np.zeros(count * count + 1, np.int64)
     heights, signs = np.zeros(0), np.zeros(0, np.int8)
-    filled = np.zeros(0, np.int64)
-    for listing in range(2):
-        if listing:
-            for ray in range(count * count):
-                starts[ray + 1] += starts[ray]
-            heights, signs = np.zeros(starts[-1]), np.zeros(starts[-1], np.int8)
-            filled = starts[:-1].copy()
-        for f in range(faces.shape[0]):
-            i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-            first_x, last_x = _cells(x[i], x[j], x[k], low[0], step[0], count)
-            first_y, last_y = _cells(y[i], y[j], y[k], low[1], step[1], count)
-            for p in range(first_x, last_x + 1):
-                for q in range(first_y, last_y + 1):
-                    rx, ry = low[0] + (p + 0.5) * step[0], low[1] + (q + 0.5) * step[1]
-                    side = _covers(x, y, faces[f], rx, ry)
-                    if side == 0:
-                        continue
-                    ray = p * count + q
-                    if listing:
-                        heights[filled[ray]] = _height(x, y, z, faces[f], rx, ry)
-                        signs[filled[ray]] = -side
-                        filled[ray] += 1
-                    else:
-                        starts[ray + 1] += 1
+    _hit(vertices, faces, low, step, count, False, starts[1:], heights, signs)
+    for ray in range(count * count):
+        starts[ray + 1] += starts[ray]
+    heights, signs = np.zeros(starts[-1]), np.zeros(starts[-1], np.int8)
+    _hit(vertices, faces, low, step, count, True, starts[:-1].copy(), heights, signs)
+
     # walk up each ray
     doubled = inverted = 0.0
     for ray in range(count * count):
         first, last = starts[ray], starts[ray + 1]
-        order = np.argsort(heights[first:last])
-        winding = 0
-        for n in range(last - first - 1):
-            winding += signs[first + order[n]]
-            length = heights[first + order[n + 1]] - heights[first + order[n]]
-            if winding > 1:
-                doubled += (winding - 1) * length
-            elif winding < 0:
-                inverted -= winding * length
+        doubled, inverted = _misenclosed_along(
+            heights[first:last], signs[first:last], doubled, inverted
+        )
     cell = step[0] * step[1]
     return doubled * cell, inverted * cell
+
+
+@njit(cache=True, error_model="numpy")
+def _hit(vertices, faces, low, step, count, listing, places, heights, signs):
+    """Count the hits of each ray in `places`; or, listing, write their heights and signs to where `places` point."""
+    x, y, z = vertices[:, 0], vertices[:, 1], vertices[:, 2]
+    for f in range(faces.shape[0]):
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        first_x, last_x = _cells(x[i], x[j], x[k], low[0], step[0], count)
+        first_y, last_y = _cells(y[i], y[j], y[k], low[1], step[1], count)
+        for p in range(first_x, last_x + 1):
+            for q in range(first_y, last_y + 1):
+                rx, ry = low[0] + (p + 0.5) * step[0], low[1] + (q + 0.5) * step[1]
+                side = _covers(x, y, faces[f], rx, ry)
+                if side == 0:
+                    continue
+                ray = p * count + q
+                if listing:
+                    heights[places[ray]] = _height(x, y, z, faces[f], rx, ry)
+                    signs[places[ray]] = -side
+                places[ray] += 1
+
+
+@njit(cache=True, error_model="numpy")
+def _misenclosed_along(heights, signs, doubled, inverted):
+    """Add to lengths enclosed more than once and less than never those of one ray, by its hits."""
+    order = np.argsort(heights)
+    winding = 0
+    for n in range(heights.shape[0] - 1):
+        winding += signs[order[n]]
+        length = heights[order[n + 1]] - heights[order[n]]
+        if winding > 1:
+            doubled += (winding - 1) * length
+        elif winding < 0:
+            inverted -= winding * length
+    return doubled, inverted

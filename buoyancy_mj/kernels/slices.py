@@ -1,7 +1,10 @@
 """Parts of a mesh in the order or at the heights that the source paper's methods ask for."""
 
+import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels.triangles import lone_corner, turn
+from buoyancy_mj.kernels.vectors import rotate, triple
 from buoyancy_mj.kernels.waves import elevation
 
 
@@ -19,10 +22,8 @@ def place(
 ):
     """Place vertices in the world; how many were looked at."""
     for n in range(order.shape[0]):
-        x, y, z = vertices[order[n], 0], vertices[order[n], 1], vertices[order[n], 2]
-        out[n, 0] = r[0] * x + r[1] * y + r[2] * z
-        out[n, 1] = r[3] * x + r[4] * y + r[5] * z
-        out[n, 2] = r[6] * x + r[7] * y + r[8] * z
+        x, y, z = triple(vertices, order[n], 0)
+        out[n, 0], out[n, 1], out[n, 2] = rotate(r, x, y, z)
         surface = level + elevation(waves, origin[0] + out[n, 0], origin[1] + out[n, 1], time)
         out[n, 3] = surface - (origin[2] + out[n, 2])
         if until_dry and not out[n, 3] > 0.0:
@@ -48,28 +49,17 @@ def sections(
         a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
         low = min(points[a, 2], points[b, 2], points[c, 2])
         high = max(points[a, 2], points[b, 2], points[c, 2])
-        # the first height not below the lowest corner
-        first, end = 0, heights.shape[0]
-        while first < end:
-            middle = (first + end) // 2
-            if heights[middle] < low:
-                first = middle + 1
-            else:
-                end = middle
+        first = np.searchsorted(heights, low)
         for i in range(first, heights.shape[0]):
             s = heights[i]
             if s >= high:
                 break
             crossings += 1
             # turn the triangle so that corner p is alone on its side
-            up_a, up_b, up_c = points[a, 2] > s, points[b, 2] > s, points[c, 2] > s
-            if up_b == up_c:
-                p, q, r, up = a, b, c, up_a
-            elif up_a == up_c:
-                p, q, r, up = b, c, a, up_b
-            else:
-                p, q, r, up = c, a, b, up_c
-            x, y, z = points[p, 0], points[p, 1], points[p, 2]
+            lone = lone_corner(points[a, 2] > s, points[b, 2] > s, points[c, 2] > s)
+            p, q, r = turn(lone, a, b, c)
+            x, y, z = triple(points, p, 0)
+            up = z > s
             j, k = (s - z) / (points[q, 2] - z), (s - z) / (points[r, 2] - z)
             u0, v0 = x + j * (points[q, 0] - x), y + j * (points[q, 1] - y)
             u1, v1 = x + k * (points[r, 0] - x), y + k * (points[r, 1] - y)

@@ -1,9 +1,15 @@
 """A tree over the triangles of a mesh, in whose nodes stand bounds and moments of the area under them.
 
-Nodes are in preorder: the first child of a node comes right behind it, and each names the node
-behind all of its children, so that a walk needs no stack; for a leaf that one comes next. The span
-of a node is its first triangle and one behind its last, in the order of the tree, the same for its
-vertices, and that node. Each leaf has vertices of its own, so that they lie together.
+Nodes are in preorder: the first child of a node comes right behind it, and each node names the one
+behind all that are below it, so that a walk needs no stack; for a leaf that one comes next. The faces
+of a node stand in the order of the tree, and so do its vertices. Each leaf has vertices of its own, so
+that they lie together. A walk goes
+
+    while node < end:
+        ...  # look at the node, and decide whether all below it is answered
+        if not answered and is_leaf(spans, node):
+            ...  # look at its triangles
+        node = node_after(spans, node, answered)
 
 The moments of the vector area dA about the middle o of the node's box, with y = x - o, are
 
@@ -17,10 +23,41 @@ import math
 import numpy as np
 from numba import njit
 
-AREA, MOMENTS = 30, 31
-"""Column of the area in a row of moments, the last, and how many there are: 3 + 9 + 18 + 1."""
-FIRST_FACE, END_FACE, FIRST_VERTEX, END_VERTEX, BEHIND = range(5)
-"""Columns of the span of a node: its faces, its vertices, and the node behind all that are below it."""
+FIRST_FACE, END_FACE, FIRST_VERTEX, END_VERTEX, BEHIND, SPAN = range(6)
+"""Columns of the span of a node, and how many: its faces, its vertices, and the node behind all that are below it."""
+MIDDLE, HALF, BOX = 0, 3, 6
+"""Columns of the box of a node, and how many: its middle (3) and half its sides (3)."""
+VECTOR, X, Y, Z, XX, YY, ZZ, XY, XZ, YZ, AREA = range(0, 31, 3)
+"""Columns of the moments of a node: three for each, but one for the area."""
+MOMENTS = 31
+"""Columns of the moments of a node."""
+
+
+# walking
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def is_leaf(spans, node):
+    """Whether no other node is below this one."""
+    return spans[node, BEHIND] == node + 1
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def node_after(spans, node, answered):
+    """The next node of a walk: the one behind all below this one, where that is answered; else the first below."""
+    return spans[node, BEHIND] if answered else node + 1
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def spread_in_box(boxes, node, g0, g1, g2, curvature):
+    """By how much a function can differ within a node's box, by its gradient in the middle and a bound of its curvature."""
+    e0, e1, e2 = boxes[node, HALF], boxes[node, HALF + 1], boxes[node, HALF + 2]
+    return (
+        abs(g0) * e0 + abs(g1) * e1 + abs(g2) * e2 + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
+    )
+
+
+# building
 
 
 @njit(cache=True, error_model="numpy")
@@ -44,47 +81,66 @@ def build(corners, leaf, order, spans):
     for i in range(n):
         for k in range(3):
             middles[i, k] = (corners[i, 0, k] + corners[i, 1, k] + corners[i, 2, k]) / 3.0
+
     # ranges still to be done, the next on top
     lows, highs = np.empty(128, np.int64), np.empty(128, np.int64)
     lows[0], highs[0], top, count = 0, n, 1, 0
-    widths = np.empty(3)
     while top:
         top -= 1
         low, high = lows[top], highs[top]
-        spans[count, 0], spans[count, 1] = low, high
+        spans[count, FIRST_FACE], spans[count, END_FACE] = low, high
         count += 1
-        if high - low <= leaf:
-            continue
-        part = order[low:high].copy()
-        for k in range(3):
-            widths[k] = middles[part, k].max() - middles[part, k].min()
-        thin, widest = np.argmin(widths), np.argmax(widths)
-        half, next_widest = low, widths.sum() - widths[thin] - widths[widest]
-        if 4.0 * widths[thin] < next_widest:
-            for i in part:
-                if _faces_along(corners[i], thin):
-                    order[half] = i
-                    half += 1
-            behind = half
-            for i in part:
-                if not _faces_along(corners[i], thin):
-                    order[behind] = i
-                    behind += 1
-        # where nearly all face one way there are no two sides
-        if min(half - low, high - half) < (high - low) // 4:
-            # stable, so that what lies side by side stays so
-            order[low:high] = part[np.argsort(middles[part, widest], kind="mergesort")]
-            half = (low + high) // 2
-        lows[top], highs[top] = half, high
-        lows[top + 1], highs[top + 1] = low, half
-        top += 2
+        if high - low > leaf:
+            half = _divide(corners, middles, order, low, high)
+            lows[top], highs[top] = half, high
+            lows[top + 1], highs[top + 1] = low, half
+            top += 2
+
     # from the last node back, the nodes behind are known
     for node in range(count - 1, -1, -1):
         after = node + 1
-        while after < count and spans[after, 0] < spans[node, 1]:
-            after = spans[after, 4]
-        spans[node, 4] = after
+        while after < count and spans[after, FIRST_FACE] < spans[node, END_FACE]:
+            after = spans[after, BEHIND]
+        spans[node, BEHIND] = after
     return count
+
+
+@njit(cache=True, error_model="numpy")
+def _divide(corners, middles, order, low, high):
+    """Sort a range of the order into two; returns where the second begins."""
+    part = order[low:high].copy()
+    widths = np.empty(3)
+    for k in range(3):
+        widths[k] = middles[part, k].max() - middles[part, k].min()
+    thin, widest = np.argmin(widths), np.argmax(widths)
+    half, next_widest = low, widths.sum() - widths[thin] - widths[widest]
+    if 4.0 * widths[thin] < next_widest:
+        half = _part_sides(corners, part, thin, order, low)
+    # where nearly all face one way there are no two sides
+    if min(half - low, high - half) < (high - low) // 4:
+        # stable, so that what lies side by side stays so
+        order[low:high] = part[np.argsort(middles[part, widest], kind="mergesort")]
+        half = (low + high) // 2
+    return half
+
+
+@njit(cache=True, error_model="numpy")
+def _part_sides(corners, part, axis, order, low):
+    """Write those of a part that face along an axis to the order from `low` on, then those that face against it.
+
+    Returns where the latter begin.
+    """
+    half = low
+    for i in part:
+        if _faces_along(corners[i], axis):
+            order[half] = i
+            half += 1
+    behind = half
+    for i in part:
+        if not _faces_along(corners[i], axis):
+            order[behind] = i
+            behind += 1
+    return half
 
 
 @njit(cache=True, error_model="numpy")
@@ -112,9 +168,9 @@ def spread(faces, spans, vertices, picked):
     leaf, place = np.full(vertices, -1), np.empty(vertices, np.int64)
     count = 0
     for node in range(spans.shape[0]):
-        spans[node, 2] = count
-        if spans[node, 4] == node + 1:
-            for f in range(spans[node, 0], spans[node, 1]):
+        spans[node, FIRST_VERTEX] = count
+        if is_leaf(spans, node):
+            for f in range(spans[node, FIRST_FACE], spans[node, END_FACE]):
                 for k in range(3):
                     i = faces[f, k]
                     if leaf[i] != node:
@@ -122,49 +178,50 @@ def spread(faces, spans, vertices, picked):
                         picked[count] = i
                         count += 1
                     faces[f, k] = place[i]
+
+    # vertices of a node end where those of the node behind begin
     for node in range(spans.shape[0] - 1, -1, -1):
-        after = spans[node, 4]
-        spans[node, 3] = count if after == spans.shape[0] else spans[after, 2]
+        after = spans[node, BEHIND]
+        spans[node, END_VERTEX] = count if after == spans.shape[0] else spans[after, FIRST_VERTEX]
     return count
 
 
 @njit(cache=True, error_model="numpy")
 def measure(corners, spans, boxes, moments):
-    """Boxes (nodes, 6), their middles and half sides, and moments (nodes, 31) of triangles (n, 3, 3) in the tree's order."""
+    """Write boxes (nodes, 6) and moments (nodes, 31) of triangles (n, 3, 3) in the order of the tree."""
     moments[:, :] = 0.0
     y = np.empty((3, 3))
-    total = np.empty(3)
-    area = np.empty(3)
     for node in range(spans.shape[0]):
+        first, last = spans[node, FIRST_FACE], spans[node, END_FACE]
         for k in range(3):
             low, high = math.inf, -math.inf
-            for i in range(spans[node, 0], spans[node, 1]):
+            for i in range(first, last):
                 for j in range(3):
                     low, high = min(low, corners[i, j, k]), max(high, corners[i, j, k])
-            boxes[node, k], boxes[node, 3 + k] = 0.5 * (low + high), 0.5 * (high - low)
-        row = moments[node]
-        for i in range(spans[node, 0], spans[node, 1]):
+            boxes[node, MIDDLE + k], boxes[node, HALF + k] = 0.5 * (low + high), 0.5 * (high - low)
+        for i in range(first, last):
             for k in range(3):
                 for j in range(3):
-                    y[j, k] = corners[i, j, k] - boxes[node, k]
-                total[k] = y[0, k] + y[1, k] + y[2, k]
-            for k in range(3):
-                p, q = (k + 1) % 3, (k + 2) % 3
-                area[k] = 0.5 * (
-                    (y[1, p] - y[0, p]) * (y[2, q] - y[0, q])
-                    - (y[1, q] - y[0, q]) * (y[2, p] - y[0, p])
-                )
-            for k in range(3):
-                row[k] += area[k]
-                for a in range(3):
-                    row[3 + 3 * a + k] += total[a] / 3.0 * area[k]
-                for m in range(6):
-                    a, b = (m, m) if m < 3 else ((0, 1) if m == 3 else (0, 2) if m == 4 else (1, 2))
-                    mean = (
-                        total[a] * total[b]
-                        + y[0, a] * y[0, b]
-                        + y[1, a] * y[1, b]
-                        + y[2, a] * y[2, b]
-                    )
-                    row[12 + 3 * m + k] += mean / 12.0 * area[k]
-            row[30] += math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2)
+                    y[j, k] = corners[i, j, k] - boxes[node, MIDDLE + k]
+            _add_moments(y, moments[node])
+
+
+@njit(cache=True, error_model="numpy")
+def _add_moments(y, row):
+    """Add the moments of a triangle with corners y (3, 3) to a row (31,)."""
+    total, area = np.empty(3), np.empty(3)
+    for k in range(3):
+        total[k] = y[0, k] + y[1, k] + y[2, k]
+        p, q = (k + 1) % 3, (k + 2) % 3
+        area[k] = 0.5 * (
+            (y[1, p] - y[0, p]) * (y[2, q] - y[0, q]) - (y[1, q] - y[0, q]) * (y[2, p] - y[0, p])
+        )
+    for k in range(3):
+        row[VECTOR + k] += area[k]
+        for a in range(3):
+            row[X + 3 * a + k] += total[a] / 3.0 * area[k]
+        for m in range(6):
+            a, b = (m, m) if m < 3 else ((0, 1) if m == 3 else (0, 2) if m == 4 else (1, 2))
+            mean = total[a] * total[b] + y[0, a] * y[0, b] + y[1, a] * y[1, b] + y[2, a] * y[2, b]
+            row[XX + 3 * m + k] += mean / 12.0 * area[k]
+    row[AREA] += math.sqrt(area[0] ** 2 + area[1] ** 2 + area[2] ** 2)

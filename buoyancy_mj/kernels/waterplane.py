@@ -8,10 +8,16 @@ import math
 
 from numba import njit
 
-from buoyancy_mj.kernels.clip import cut, placed
+from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.hulls import FILL, WHOLE_MIDDLE
+from buoyancy_mj.kernels.triangles import cut
+from buoyancy_mj.kernels.vectors import place, triple
 
-# columns of one row of results
-AREA, FIRST, SECOND, EXTENTS, COLUMNS = 0, slice(1, 3), slice(3, 6), slice(6, 10), 10
+AREA, X, Y, XX, XY, YY, LOW_X, LOW_Y, HIGH_X, HIGH_Y, COLUMNS = range(11)
+"""Columns of one row of results, and how many: integrals of 1, x, y, x x, x y and y y over the waterplane, each times the
+part that displaces; and the lowest x, y and the highest x, y of the waterline."""
+INTEGRALS, LOWEST, HIGHEST = slice(AREA, LOW_X), slice(LOW_X, HIGH_X), slice(HIGH_X, COLUMNS)
+"""The same columns in groups."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -19,67 +25,75 @@ def waterplanes(
     hulls,  # `hulls.Hulls`
     geoms,  # `multibody.Geoms`
     about,  # (3,) the point that all is about
-    level,
-    depths,  # scratch
-    out,  # (h, 10) integrals of 1, x, y, x x, x y, y y, each times the part that displaces; and the lowest x, y and
-    # highest x, y of the waterline
+    level,  # [m]
+    depths,  # scratch, as long as the most vertices of a leaf
+    out,  # (h, 10)
 ):
     """The waterplane of each hull on still water, seen from above, in the world's axes."""
-    vertices, faces, spans, boxes = hulls.vertices, hulls.faces, hulls.spans, hulls.boxes
-    whole, frames = hulls.whole, hulls.frames
-    for h in range(frames.shape[0]):
-        origin, r = geoms.geom_xpos[frames[h]], geoms.geom_xmat[frames[h]]
-        out[h, 0:6] = 0.0
-        out[h, 6:8], out[h, 8:10] = math.inf, -math.inf
-        still = level - origin[2]
+    for h in range(hulls.frames.shape[0]):
+        origin, r = geoms.geom_xpos[hulls.frames[h]], geoms.geom_xmat[hulls.frames[h]]
+        row = out[h]
+        row[:LOW_X] = 0.0
+        row[LOW_X:HIGH_X] = math.inf
+        row[HIGH_X:] = -math.inf
+
         # about the middle of the hull, lest the moments cancel
         corner = (origin[0] - about[0], origin[1] - about[1], 0.0)
-        mx, my, _ = placed(corner, r, whole[h, 5], whole[h, 6], whole[h, 7])
-        a = ax = ay = axx = axy = ayy = 0.0
-        i, end = hulls.nodes[h], hulls.nodes[h + 1]
-        while i < end:
-            depth = still - (r[6] * boxes[i, 0] + r[7] * boxes[i, 1] + r[8] * boxes[i, 2])
-            reach = abs(r[6]) * boxes[i, 3] + abs(r[7]) * boxes[i, 4] + abs(r[8]) * boxes[i, 5]
-            after = spans[i, 4]
-            if abs(depth) >= reach:
-                i = after
-                continue
-            if after > i + 1:
-                i += 1
-                continue
-            base = spans[i, 2]
-            for n in range(base, spans[i, 3]):
-                depths[n - base] = still - (
-                    r[6] * vertices[n, 0] + r[7] * vertices[n, 1] + r[8] * vertices[n, 2]
-                )
-            for f in range(spans[i, 0], spans[i, 1]):
-                j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
-                w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]
-                wet = int(w0 > 0.0) + int(w1 > 0.0) + int(w2 > 0.0)
-                if wet == 0 or wet == 3:
-                    continue
-                _, _, one, other = cut(
-                    1.0, vertices[j, 0], vertices[j, 1], vertices[j, 2], w0, w0,
-                    vertices[k, 0], vertices[k, 1], vertices[k, 2], w1, w1,
-                    vertices[o, 0], vertices[o, 1], vertices[o, 2], w2, w2,
-                )  # fmt: skip
-                px, py, _ = placed(corner, r, one[0], one[1], one[2])
-                qx, qy, _ = placed(corner, r, other[0], other[1], other[2])
-                out[h, 6], out[h, 8] = min(out[h, 6], px, qx), max(out[h, 8], px, qx)
-                out[h, 7], out[h, 9] = min(out[h, 7], py, qy), max(out[h, 9], py, qy)
-                px, py, qx, qy = px - mx, py - my, qx - mx, qy - my
-                # exact on the triangle from the middle to the cut
-                twice = px * qy - py * qx
-                a += twice / 2.0
-                ax += twice * (px + qx) / 6.0
-                ay += twice * (py + qy) / 6.0
-                axx += twice * (px * px + px * qx + qx * qx) / 12.0
-                ayy += twice * (py * py + py * qy + qy * qy) / 12.0
-                axy += twice * (2.0 * px * py + px * qy + qx * py + 2.0 * qx * qy) / 24.0
-            i = after
-        fill = whole[h, 11]
-        out[h, 0] = fill * a
-        out[h, 1], out[h, 2] = fill * (ax + mx * a), fill * (ay + my * a)
-        out[h, 3] = fill * (axx + 2.0 * mx * ax + mx * mx * a)
-        out[h, 4] = fill * (axy + mx * ay + my * ax + mx * my * a)
-        out[h, 5] = fill * (ayy + 2.0 * my * ay + my * my * a)
+        c0, c1, c2 = triple(hulls.whole, h, WHOLE_MIDDLE)
+        mx, my, _ = place(corner, r, c0, c1, c2)
+        _walk(hulls, h, corner, r, level - origin[2], mx, my, depths, row)
+
+        # about the point, times the part that displaces
+        fill = hulls.whole[h, FILL]
+        a, ax, ay, axx, axy, ayy = row[AREA], row[X], row[Y], row[XX], row[XY], row[YY]
+        row[AREA] = fill * a
+        row[X], row[Y] = fill * (ax + mx * a), fill * (ay + my * a)
+        row[XX] = fill * (axx + 2.0 * mx * ax + mx * mx * a)
+        row[XY] = fill * (axy + mx * ay + my * ax + mx * my * a)
+        row[YY] = fill * (ayy + 2.0 * my * ay + my * my * a)
+
+
+@njit(cache=True, error_model="numpy")
+def _walk(hulls, h, corner, r, still, mx, my, depths, row):
+    """Add the waterplane of a hull about its middle to a row, by the tree over its triangles."""
+    vertices, spans, boxes = hulls.vertices, hulls.spans, hulls.boxes
+    i, end = hulls.nodes[h], hulls.nodes[h + 1]
+    while i < end:
+        b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
+        depth = still - (r[6] * b0 + r[7] * b1 + r[8] * b2)
+        missed = abs(depth) >= tree.spread_in_box(boxes, i, r[6], r[7], r[8], 0.0)
+        if not missed and tree.is_leaf(spans, i):
+            base = spans[i, tree.FIRST_VERTEX]
+            for n in range(base, spans[i, tree.END_VERTEX]):
+                x, y, z = triple(vertices, n, 0)
+                depths[n - base] = still - (r[6] * x + r[7] * y + r[8] * z)
+            for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
+                _add_triangle(vertices, hulls.faces, f, base, depths, corner, r, mx, my, row)
+        i = tree.node_after(spans, i, missed)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add_triangle(vertices, faces, f, base, depths, corner, r, mx, my, row):
+    """Add the triangle from the middle to where the surface cuts a face, if it does, exactly."""
+    j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
+    w0, w1, w2 = depths[j - base], depths[k - base], depths[o - base]
+    wet = int(w0 > 0.0) + int(w1 > 0.0) + int(w2 > 0.0)
+    if wet != 0 and wet != 3:
+        x0, y0, z0 = triple(vertices, j, 0)
+        x1, y1, z1 = triple(vertices, k, 0)
+        x2, y2, z2 = triple(vertices, o, 0)
+        _, _, one, other = cut(
+            1.0, (x0, y0, z0, w0), (x1, y1, z1, w1), (x2, y2, z2, w2), w0, w1, w2
+        )
+        px, py, _ = place(corner, r, one[0], one[1], one[2])
+        qx, qy, _ = place(corner, r, other[0], other[1], other[2])
+        row[LOW_X], row[HIGH_X] = min(row[LOW_X], px, qx), max(row[HIGH_X], px, qx)
+        row[LOW_Y], row[HIGH_Y] = min(row[LOW_Y], py, qy), max(row[HIGH_Y], py, qy)
+        px, py, qx, qy = px - mx, py - my, qx - mx, qy - my
+        twice = px * qy - py * qx
+        row[AREA] += twice / 2.0
+        row[X] += twice * (px + qx) / 6.0
+        row[Y] += twice * (py + qy) / 6.0
+        row[XX] += twice * (px * px + px * qx + qx * qx) / 12.0
+        row[YY] += twice * (py * py + py * qy + qy * qy) / 12.0
+        row[XY] += twice * (2.0 * px * py + px * qy + qx * py + 2.0 * qx * qy) / 24.0

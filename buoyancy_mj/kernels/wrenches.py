@@ -1,84 +1,93 @@
-"""Wrenches on bodies from what is wet: buoyancy and the pressure of waves; and what all wrenches do to the joints."""
+"""Wrenches on bodies from what is wet: buoyancy and the pressure of waves; and what all wrenches do to the joints.
+
+A wrench on a body is a row of force [N] and torque [N m] about `xipos`, the centre of mass of the
+body, in the world's axes: what MuJoCo's xfrc_applied holds.
+"""
 
 import math
 
 from numba import njit
 
+from buoyancy_mj.kernels.clip import CX, CY, CZ, VOLUME
 from buoyancy_mj.kernels.multibody import last_dof
-
-
-@njit(cache=True, error_model="numpy")
-def add_buoyancy(wet, bodies, weight, xipos, out):
-    """Add to rows of `out` (nbody, 6) the force `weight` [N/m^3] times volume upward at each hull's centroid.
-
-    The torque is about `xipos`, the centre of mass of the body: where MuJoCo's xfrc_applied acts.
-    """
-    for h in range(bodies.shape[0]):
-        if wet[h, 0] == 0.0:
-            continue
-        b = bodies[h]
-        force = weight * wet[h, 0]
-        out[b, 2] += force
-        out[b, 3] += (wet[h, 2] - xipos[b, 1]) * force
-        out[b, 4] -= (wet[h, 1] - xipos[b, 0]) * force
-
-
-@njit(cache=True, error_model="numpy")
-def add_wave_pressure(heads, wet, owners, frames, positions, weight, xipos, out):
-    """Add to rows of `out` (nbody, 6) what the pressure `weight` [N/m^3] times `heads` (h, 6) has beyond buoyancy.
-
-    The heads are about the origin of each hull's frame, see `pressure.press_hulls`; the torque is about `xipos`.
-    """
-    for h in range(owners.shape[0]):
-        b, o = owners[h], positions[frames[h]]
-        fx, fy, fz = weight * heads[h, 0], weight * heads[h, 1], weight * heads[h, 2]
-        x, y, z = o[0] - xipos[b, 0], o[1] - xipos[b, 1], o[2] - xipos[b, 2]
-        lift = weight * wet[h, 0]
-        out[b, 0] += fx
-        out[b, 1] += fy
-        out[b, 2] += fz - lift
-        out[b, 3] += weight * heads[h, 3] + y * fz - z * fy
-        out[b, 4] += weight * heads[h, 4] + z * fx - x * fz
-        out[b, 5] += weight * heads[h, 5] + x * fy - y * fx
-        if lift != 0.0:
-            out[b, 3] -= (wet[h, 2] - xipos[b, 1]) * lift
-            out[b, 4] += (wet[h, 1] - xipos[b, 0]) * lift
+from buoyancy_mj.kernels.vectors import difference
 
 
 @njit(cache=True, error_model="numpy")
 def merge(wet, owners, out):
-    """Volume and centroid of the hulls of each owner, rows of `out` (n, 4); the centroid is NaN where all is dry."""
+    """Volume and centroid of the hulls of each owner, rows of `out` (n, 4); the centroid is NaN where all is dry.
+
+    The columns are those of `clip`, up to the centroid.
+    """
     out[:, :] = 0.0
     for h in range(owners.shape[0]):
-        if wet[h, 0] == 0.0:
+        if wet[h, VOLUME] == 0.0:
             continue
         row = out[owners[h]]
-        row[0] += wet[h, 0]
-        for c in range(3):
-            row[1 + c] += wet[h, 0] * wet[h, 1 + c]
+        row[VOLUME] += wet[h, VOLUME]
+        for c in range(CX, CZ + 1):
+            row[c] += wet[h, VOLUME] * wet[h, c]
     for n in range(out.shape[0]):
-        for c in range(1, 4):
-            out[n, c] = out[n, c] / out[n, 0] if out[n, 0] != 0.0 else math.nan
+        for c in range(CX, CZ + 1):
+            out[n, c] = out[n, c] / out[n, VOLUME] if out[n, VOLUME] != 0.0 else math.nan
+
+
+@njit(cache=True, error_model="numpy")
+def add_buoyancy(wet, owners, specific_weight, xipos, out):
+    """Add to rows of `out` (nbody, 6) the force `specific_weight` [N/m^3] times volume upward at each hull's centroid."""
+    for h in range(owners.shape[0]):
+        if wet[h, VOLUME] == 0.0:
+            continue
+        b = owners[h]
+        force = specific_weight * wet[h, VOLUME]
+        out[b, 2] += force
+        out[b, 3] += (wet[h, CY] - xipos[b, 1]) * force
+        out[b, 4] -= (wet[h, CX] - xipos[b, 0]) * force
+
+
+@njit(cache=True, error_model="numpy")
+def add_wave_pressure(heads, wet, owners, frames, positions, specific_weight, xipos, out):
+    """Add to rows of `out` (nbody, 6) what the pressure has beyond buoyancy: `specific_weight` [N/m^3] times `heads` (h, 6).
+
+    The heads are about the origin of each hull's frame, see `pressure.press_hulls`.
+    """
+    for h in range(owners.shape[0]):
+        b = owners[h]
+        fx, fy, fz = (
+            specific_weight * heads[h, 0],
+            specific_weight * heads[h, 1],
+            specific_weight * heads[h, 2],
+        )
+        x, y, z = difference(positions[frames[h]], xipos[b])
+        lift = specific_weight * wet[h, VOLUME]
+        out[b, 0] += fx
+        out[b, 1] += fy
+        out[b, 2] += fz - lift
+        out[b, 3] += specific_weight * heads[h, 3] + y * fz - z * fy
+        out[b, 4] += specific_weight * heads[h, 4] + z * fx - x * fz
+        out[b, 5] += specific_weight * heads[h, 5] + x * fy - y * fx
+        if lift != 0.0:
+            out[b, 3] -= (wet[h, CY] - xipos[b, 1]) * lift
+            out[b, 4] += (wet[h, CX] - xipos[b, 0]) * lift
 
 
 @njit(cache=True, error_model="numpy")
 def project(
-    wrench,  # (nbody, 6) force and torque about xipos, world frame
-    wet_bodies,  # (n,) those that have one
+    wrenches,  # (nbody, 6)
+    loaded,  # (n,) bodies that have one
     bodies,  # `multibody.Bodies`
     joints,  # `multibody.Joints`
     qfrc,  # (nv,)
 ):
     """Add J^T w to the generalized forces `qfrc`, as MuJoCo's mj_applyFT does for each body."""
-    for n in range(wet_bodies.shape[0]):
-        b = wet_bodies[n]
-        fx, fy, fz = wrench[b, 0], wrench[b, 1], wrench[b, 2]
+    for n in range(loaded.shape[0]):
+        b = loaded[n]
+        fx, fy, fz = wrenches[b, 0], wrenches[b, 1], wrenches[b, 2]
         # the torque about the point that the joints' axes are given at
-        com, at = bodies.subtree_com[bodies.body_rootid[b]], bodies.xipos[b]
-        x, y, z = at[0] - com[0], at[1] - com[1], at[2] - com[2]
-        tx = wrench[b, 3] + y * fz - z * fy
-        ty = wrench[b, 4] + z * fx - x * fz
-        tz = wrench[b, 5] + x * fy - y * fx
+        x, y, z = difference(bodies.xipos[b], bodies.subtree_com[bodies.body_rootid[b]])
+        tx = wrenches[b, 3] + y * fz - z * fy
+        ty = wrenches[b, 4] + z * fx - x * fz
+        tz = wrenches[b, 5] + x * fy - y * fx
         i = last_dof(joints, b)
         while i >= 0:
             c = joints.cdof[i]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.kernels import clip
-from buoyancy_mj.kernels.waterplane import AREA, EXTENTS, FIRST, SECOND
+from buoyancy_mj.kernels.waterplane import HIGHEST, INTEGRALS, LOWEST
 from buoyancy_mj.statics.vessel import Vessel
 
 
@@ -122,14 +122,13 @@ def pose_vessel(vessel: Vessel, position: ArrayLike, rotation: ArrayLike) -> Flo
 
     # the waterplanes of all hulls as one
     rows = vessel.packed.waterplanes(positions, rotations, origin)
-    xx, xy, yy = rows[:, SECOND].sum(axis=0)
-    extents = rows[:, EXTENTS].reshape(-1, 2, 2)
+    area, x, y, xx, xy, yy = rows[:, INTEGRALS].sum(axis=0)
     waterplane = Waterplane(
-        area=float(rows[:, AREA].sum()),
-        first_moments=rows[:, FIRST].sum(axis=0),
+        area=float(area),
+        first_moments=np.array([x, y]),
         second_moments=np.array([[xx, xy], [xy, yy]]),
-        low=extents[:, 0].min(axis=0),
-        high=extents[:, 1].max(axis=0),
+        low=rows[:, LOWEST].min(axis=0),
+        high=rows[:, HIGHEST].max(axis=0),
     )
     return FloatingPose(
         vessel=vessel,

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
 from buoyancy_mj.kernels import clip
+from buoyancy_mj.kernels.vectors import is_rotation
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
@@ -67,7 +68,7 @@ def submerge(
         raise MeshError(
             f"position is {position!r} and time {time}; they must be three finite numbers and one"
         )
-    if turn.shape != (3, 3) or not clip.is_rotation(turn):
+    if turn.shape != (3, 3) or not is_rotation(turn):
         raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
     pose = origin[None], turn.reshape(1, 9), float(time)
 

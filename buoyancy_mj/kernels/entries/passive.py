@@ -14,7 +14,7 @@ from buoyancy_mj.kernels.arrays import Words
 from buoyancy_mj.kernels.entries.pointers import call, exchange
 from buoyancy_mj.kernels.entries.views import view, view_engine
 from buoyancy_mj.kernels.hulls import Scratch
-from buoyancy_mj.kernels.multibody import Engine, Identity, downward_gravity
+from buoyancy_mj.kernels.multibody import Engine, Identity, Option, downward_gravity
 from buoyancy_mj.kernels.passes import DATA, MODEL, Loads, Record
 
 
@@ -61,35 +61,42 @@ class Workplace(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy")
-def _evaluate(model, data, water, scratch, record):
+def _evaluate(model, data, water, place, record):
     """One pass: the loads go into a record, and are added to the engine's passive forces and mass matrix.
 
     Returns 0, or the address of a text that tells why it cannot.
     """
-    table, left = view(water, WaterTable), view(record, Record)
-    loads, links = table.loads, table.links
-    engine = view_engine(model, data, table.offsets, Engine)
-    room = view(scratch, Workplace).scratch
-    gravity = downward_gravity(engine.option.gravity, engine.option.disableflags)
+    option = view_engine(model, data, view(water, WaterTable).offsets, Option)
+    gravity = downward_gravity(option.gravity, option.disableflags)
     if math.isnan(gravity):
-        return links.gravity_text
-
-    # what is under water
-    if links.submerge != 0:
-        text = call(links.submerge, water, data, record, 0)
-        if text != 0:
-            return text
-    else:
-        clip.submerge_hulls(loads.hulls, engine.geoms, loads.sea, engine.time, room, left.wet)
+        return view(water, WaterTable).links.gravity_text
+    text = _submerge(model, data, water, place, record)
+    if text != 0:
+        return text
 
     # what the water does, to the forces and to the mass matrix
-    passes.add_up(loads, engine, gravity, room, left)
-    done = passes.apply(loads, engine, left)
+    table, results = view(water, WaterTable), view(record, Record)
+    loads, links = table.loads, table.links
+    engine = view_engine(model, data, table.offsets, Engine)
+    passes.add_up(loads, engine, gravity, view(place, Workplace).scratch, results)
+    done = passes.apply(loads, engine, results)
     if done != passes.UNCHANGED:
         call(links.factor, model, data, 0, 0)
     if done == passes.AUGMENT_DUAL:
         call(links.project, model, data, 0, 0)
-    left.ids[MODEL], left.ids[DATA] = model, data
+    results.ids[MODEL], results.ids[DATA] = model, data
+    return 0
+
+
+@njit(cache=True, error_model="numpy")
+def _submerge(model, data, water, place, record):
+    """Find what is under water; returns 0, or the address of a text that tells why it cannot."""
+    table, results = view(water, WaterTable), view(record, Record)
+    if table.links.submerge != 0:
+        return call(table.links.submerge, water, data, record, 0)
+    engine = view_engine(model, data, table.offsets, Engine)
+    scratch, loads = view(place, Workplace).scratch, table.loads
+    clip.submerge_hulls(loads.hulls, engine.geoms, loads.sea, engine.time, scratch, results.wet)
     return 0
 
 
