@@ -30,7 +30,7 @@ from buoyancy_mj.loads.loads import Loads as Loads
 from buoyancy_mj.loads.loads import Portion as Portion
 from buoyancy_mj.meshes.mesh import TriMesh as TriMesh
 from buoyancy_mj.meshes.repair import repair as repair
-from buoyancy_mj.records import show_fields as show_fields
+from buoyancy_mj.records import show_fields as _show_fields
 from buoyancy_mj.scenes.frames import Frame as Frame
 from buoyancy_mj.scenes.frames import Summary as Summary
 from buoyancy_mj.scenes.scene import Scene as Scene
@@ -66,4 +66,4 @@ __version__ = version("buoyancy_mj")
 
 for _value in tuple(globals().values()):
     if isinstance(_value, type) and dataclasses.is_dataclass(_value):
-        show_fields(_value)
+        _show_fields(_value)

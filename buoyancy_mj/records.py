@@ -1,4 +1,9 @@
-"""Classes that hold values: `help()` shows their fields, and some refuse to be changed."""
+"""Classes that hold values, and what shows their fields.
+
+In: dataclasses with a docstring under each field, classes whose attributes should stay.
+Out: docstrings with those fields, attributes that cannot be assigned.
+May import: nothing of this package.
+"""
 
 import ast
 import dataclasses

@@ -1,4 +1,4 @@
-"""Damping and added mass: what the water does to a body beside buoyancy.
+"""What the water does to a body beside buoyancy.
 
 In: hulls, and coefficients from the model, from a dataset or from the user.
 Out: arrays of damping and added mass for the kernels, and the `Loads` of one instant.

@@ -42,6 +42,7 @@ class ConvexHull:
     """
 
     name: ClassVar[str] = "convex_hull"
+    """What scenes and the command line call the method."""
     cut: bool = False
     """Add the points where edges meet the surface, which the paper's set of vertices lacks."""
     centroid: str = "vertices"

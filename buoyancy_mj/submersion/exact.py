@@ -35,6 +35,7 @@ class Exact:
     """
 
     name: ClassVar[str] = "exact"
+    """What scenes and the command line call the method."""
     tolerance: float = 2e-3
     """Part of the volume by which straight cuts of triangles may be off in waves, at worst.
 

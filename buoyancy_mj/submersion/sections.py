@@ -38,6 +38,7 @@ class Sections:
     """
 
     name: ClassVar[str] = "sections"
+    """What scenes and the command line call the method."""
     step: float | None = None
     """Distance between sections [m]; None for a 100th of each hull's extent along the axis."""
     axis: tuple[float, float, float] | None = None
