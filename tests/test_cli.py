@@ -257,10 +257,10 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
         assert time.monotonic() < deadline
         time.sleep(0.1)
     os.kill(process.pid, sent)
-    _, printed = process.communicate(timeout=60)
+    _, told = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert re.search(r"the recording up to .* s is in 'out.rrd'", printed), printed
-    assert "Traceback" not in printed
+    assert re.search(r"the recording up to .* s is in 'out.rrd'", told), told
+    assert "Traceback" not in told
     verify = [sys.executable, "-m", "rerun", "rrd", "verify", str(tmp_path / "out.rrd")]
     assert subprocess.run(verify, capture_output=True, check=False).returncode == 0
 
