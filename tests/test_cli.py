@@ -79,7 +79,7 @@ def test_a_method_is_chosen_and_its_options_set(run, method):
     assert with_option.exit_code == 0, with_option.output
 
 
-def test_an_unknown_method_is_told(run):
+def test_an_unknown_method_is_reported(run):
     one_sentence(
         run("run", "auv_waves", "--method", "hull", "--no-record"), "unknown kind 'hull'; .*exact"
     )

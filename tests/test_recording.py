@@ -187,7 +187,7 @@ def test_a_full_disk_ends_the_recording_at_a_whole_message_and_says_so(tmp_path)
     assert "/world/bodies/sauvc_auv" in entities(rerun("print", "-vv", str(path)).stdout)
 
 
-def test_a_place_that_is_no_folder_is_told(tmp_path):
+def test_a_place_that_is_no_folder_is_reported(tmp_path):
     (tmp_path / "file").write_text("")
     simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_still"], SHORT))
     with pytest.raises(
@@ -264,7 +264,7 @@ def test_two_runs_do_not_write_one_file(tmp_path):
 
 
 @pytest.mark.slow
-def test_a_live_viewer_that_cannot_open_is_told_and_leaves_nothing(tmp_path):
+def test_a_live_viewer_that_cannot_open_is_reported_and_leaves_nothing(tmp_path):
     environment = {
         key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")
     }

@@ -146,12 +146,12 @@ def test_any_field_can_be_set(folder, setting, look):
         ("title.x=3", "cannot set 'title.x': 'title' is 'A box', no table"),
     ],
 )
-def test_a_setting_that_makes_no_sense_is_told(folder, setting, message):
+def test_a_setting_that_makes_no_sense_is_reported(folder, setting, message):
     with pytest.raises(SceneError, match=re.escape(message)):
         read_scene(folder / "scene.toml", [setting])
 
 
-def test_a_missing_key_is_told(folder):
+def test_a_missing_key_is_reported(folder):
     (folder / "scene.toml").write_text('title = "x"')
     with pytest.raises(
         SceneError, match="scene 'scene': 'vehicle' is missing; needed is a text in quotes"
@@ -159,7 +159,7 @@ def test_a_missing_key_is_told(folder):
         read_scene(folder / "scene.toml")
 
 
-def test_a_file_that_is_no_toml_is_told(folder):
+def test_a_file_that_is_no_toml_is_reported(folder):
     (folder / "scene.toml").write_text("title = ")
     with pytest.raises(SceneError, match="is no valid TOML"):
         read_scene(folder / "scene.toml")
@@ -167,7 +167,7 @@ def test_a_file_that_is_no_toml_is_told(folder):
         read_scene(folder / "nothing.toml")
 
 
-def test_an_unknown_scene_is_told_with_the_nearest():
+def test_an_unknown_scene_is_reported_with_the_nearest():
     with pytest.raises(
         SceneError,
         match=r"there is no scene 'auv_wave', .*; did you mean 'auv_waves'\? "
@@ -186,7 +186,7 @@ def test_a_vehicle_is_found_beside_its_scene(folder, monkeypatch, tmp_path_facto
     assert Simulation(read_scene(folder / "scene.toml")).mass == pytest.approx(4.0)
 
 
-def test_a_missing_vehicle_is_told(folder):
+def test_a_missing_vehicle_is_reported(folder):
     with pytest.raises(
         ModelError,
         match=r"there is no vehicle 'bax.xml', neither a file nor one that ships; "
@@ -221,7 +221,7 @@ def test_keyframes_survive_the_free_joint(folder):
     assert simulation.data.qpos == pytest.approx([1, 2, 3, 1, 0, 0, 0, 0.7])
 
 
-def test_an_unknown_keyframe_is_told(folder):
+def test_an_unknown_keyframe_is_reported(folder):
     with pytest.raises(SceneError, match="the vehicle has no keyframe 'bend'; possible: nothing"):
         simulation_of(folder, BOX.format(joint="", more="", rest=""), "start.keyframe=bend")
 
@@ -235,7 +235,7 @@ def test_a_vehicle_on_joints_of_its_own_keeps_them(folder):
         pass
 
 
-def test_a_start_that_cannot_be_applied_is_told(folder):
+def test_a_start_that_cannot_be_applied_is_reported(folder):
     xml = BOX.format(joint='<joint type="slide" axis="0 0 1"/>', more="", rest="")
     with pytest.warns(
         BuoyancyWarning,
@@ -267,7 +267,7 @@ def test_a_mocap_body_is_no_vehicle(folder):
     assert simulation.data.qpos[:3] == pytest.approx([0.0, 0.0, 1.0])
 
 
-def test_an_environment_that_does_not_fit_is_told(folder):
+def test_an_environment_that_does_not_fit_is_reported(folder):
     (folder / "pool.xml").write_text(
         """<mujoco><worldbody><geom type="plane" size="1 1 1"/></worldbody>
         <keyframe><key name="e" qpos="1 2"/></keyframe></mujoco>"""
@@ -368,7 +368,7 @@ def test_the_environment_is_attached_under_its_own_prefix(folder):
     assert simulation.summary().displacement == pytest.approx(1025.0 * 0.012)
 
 
-def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
+def test_a_vehicle_a_thousand_times_too_large_is_reported(folder):
     xml = BOX.format(joint="", more="", rest="").replace('size=".2 .15 .05"', 'size="200 100 100"')
     with pytest.raises(
         ModelError,
@@ -379,7 +379,7 @@ def test_a_vehicle_a_thousand_times_too_large_is_told(folder):
 
 
 @pytest.mark.parametrize("option", ["density='1000'", "viscosity='0.001'"])
-def test_mujocos_own_fluid_is_told_as_double_drag(folder, option):
+def test_mujocos_own_fluid_is_reported_as_double_drag(folder, option):
     xml = BOX.format(joint="", more="", rest=f"<option {option}/>")
     with pytest.warns(
         BuoyancyWarning, match=rf"<option {option}>: MuJoCo's own fluid drag acts as well as ours"
@@ -460,7 +460,7 @@ def test_touching_the_bottom_is_counted(folder):
     assert simulation.summary().first_contact == pytest.approx(0.01, abs=0.011)
 
 
-def test_a_diverging_simulation_is_told_with_time_body_and_quantity(folder):
+def test_a_diverging_simulation_is_reported_with_time_body_and_quantity(folder):
     (folder / "box.xml").write_text(BOX.format(joint="<freejoint/>", more="", rest=""))
     simulation = Simulation(read_scene(folder / "scene.toml"))
     frames = simulation.frames()
@@ -473,7 +473,7 @@ def test_a_diverging_simulation_is_told_with_time_body_and_quantity(folder):
         list(frames)
 
 
-def test_a_steep_simulation_that_runs_away_is_told(folder):
+def test_a_steep_simulation_that_runs_away_is_reported(folder):
     # an undamped explicit step far beyond its stability limit
     simulation = simulation_of(
         folder,

@@ -72,7 +72,7 @@ def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
         for _ in range(alone.steps):
             alone.step()
         alone._frame()
-        told = dataclasses.asdict(alone.summary())
+        summary = dataclasses.asdict(alone.summary())
         for name in (
             "mass",
             "displacement",
@@ -82,10 +82,10 @@ def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
             "cog_z_range",
             "simulated_time",
         ):
-            assert float(row[name]) == pytest.approx(told[name], rel=1e-12, abs=1e-12), name
-        assert int(float(row["contact_steps"])) == told["contact_steps"]
+            assert float(row[name]) == pytest.approx(summary[name], rel=1e-12, abs=1e-12), name
+        assert int(float(row["contact_steps"])) == summary["contact_steps"]
         assert row["first_contact"] == (
-            "" if told["first_contact"] is None else str(told["first_contact"])
+            "" if summary["first_contact"] is None else str(summary["first_contact"])
         )
 
 
@@ -231,12 +231,12 @@ def test_what_the_engine_refuses_is_a_reason_too(tmp_path):
         "mass=1:2:x",
     ],
 )
-def test_a_span_that_is_none_is_told(text):
+def test_a_span_that_is_none_is_reported(text):
     with pytest.raises(SweepError, match="it must be KEY=a:b:n, n values from a to b"):
         parse_range(text)
 
 
-def test_sweeps_that_make_no_sense_are_told(tmp_path):
+def test_sweeps_that_make_no_sense_are_reported(tmp_path):
     with pytest.raises(
         SweepError, match=r"has no number of values; add it \(:n\), or give --draws"
     ):
@@ -275,9 +275,9 @@ def test_the_command_tells_how_many_failed(tmp_path):
             f"sweep hourglass_drop_still --over mass=-100:100:3 --duration 0.1 --out {out}"
         )
     ]
-    told = CliRunner().invoke(app, arguments)
-    assert told.exit_code == 0, told.output
-    assert "3 runs, 2 failed" in told.output
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 0, result.output
+    assert "3 runs, 2 failed" in result.output
     assert [row["status"] for row in read(out)] == ["failed", "failed", "done"]
-    told = CliRunner().invoke(app, [*arguments[:3], "mass=1:2", *arguments[4:]])
-    assert told.exit_code == 1
+    result = CliRunner().invoke(app, [*arguments[:3], "mass=1:2", *arguments[4:]])
+    assert result.exit_code == 1

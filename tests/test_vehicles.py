@@ -96,7 +96,7 @@ def test_files_of_a_package_are_found_on_the_ros_path(tmp_path, monkeypatch):
     assert inspect_model(path)[0]["problems"] == []
 
 
-def test_a_base_without_inertia_is_told(tmp_path):
+def test_a_base_without_inertia_is_reported(tmp_path):
     stl(tmp_path, "base.stl", shapes.box((0.2, 0.2, 0.1)))
     path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=0.0, inertia=0.1))
     refused(
@@ -106,7 +106,7 @@ def test_a_base_without_inertia_is_told(tmp_path):
     )
 
 
-def test_a_mesh_in_ascii_is_told(tmp_path):
+def test_a_mesh_in_ascii_is_reported(tmp_path):
     stl(tmp_path, "base.stl", shapes.box((0.2, 0.2, 0.1)), kind="stl_ascii")
     path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=10, inertia=0.2))
     refused(path, "save the mesh as a binary STL or as OBJ")

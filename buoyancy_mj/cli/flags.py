@@ -162,7 +162,7 @@ def _flags(cls: Any) -> Iterator[inspect.Parameter]:
     hints = typing.get_type_hints(cls, include_extras=True)
     for field in dataclasses.fields(cls):
         (option,) = getattr(hints[field.name], "__metadata__", (typer.Option(),))
-        option.help = " ".join(docs[field.name].split())
+        option.help = " ".join(docs.get(field.name, "").split())
         yield inspect.Parameter(
             field.name,
             inspect.Parameter.KEYWORD_ONLY,
