@@ -257,6 +257,14 @@ def test_every_room_stands_in_the_import_contract():
     assert placed - {"__main__"} == set(ROOMS)
 
 
+def test_no_public_name_hides_a_module():
+    paths = [path.relative_to(ROOT) for path in (ROOT / "buoyancy_mj").rglob("[a-z]*.py")]
+    for path in paths:
+        module = importlib.import_module(".".join(path.with_suffix("").parts))
+        owner = importlib.import_module(".".join(path.parent.parts))
+        assert getattr(owner, path.stem) is module, path
+
+
 def test_the_house_on_the_page_is_the_house():
     house = script("draw_house")
     rooms = house.read_rooms()
