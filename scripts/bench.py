@@ -145,7 +145,7 @@ def submersions(solid: trimesh.Trimesh, least: float) -> dict[str, float]:
             by_capytaine, least, fewest=1 if len(solid.faces) > 10_000 else 3
         )
     packed = exact.PackedHulls([mesh], [0], [0], Water())
-    arrays = [*packed.hulls, *packed.scratch, packed.results, mesh.vertices, mesh.faces]
+    arrays = [*packed.hulls, *packed.scratch.cut, packed.results, mesh.vertices, mesh.faces]
     times["bytes per triangle"] = sum(values.nbytes for values in arrays) / len(solid.faces)
     return times
 

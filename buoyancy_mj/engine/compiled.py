@@ -1,5 +1,6 @@
 """What compiled code needs to act without Python: tables of the water and of where results go, and C functions."""
 
+import copy
 import ctypes
 import functools
 import threading
@@ -17,9 +18,9 @@ from buoyancy_mj.kernels.entries import passive
 from buoyancy_mj.kernels.entries.closures import Closure, compile_kernel
 from buoyancy_mj.kernels.entries.passive import Links, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
-from buoyancy_mj.kernels.hulls import Scratch
 from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS
 from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
+from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.submersion.exact import PackedHulls
 
 THREADS = 64
@@ -151,7 +152,7 @@ class _Worker:
     def __init__(self, scratch: Scratch, record: Table[Record]) -> None:
         self.record = record
         self._taken = np.zeros(1, np.int64)
-        room = Scratch(*(np.empty_like(array) for array in scratch))
+        room = copy.deepcopy(scratch)
         self.table = Table(Workplace(room, self._taken.ctypes.data, record.address))
 
 

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels.arrays import conform, empty
 from buoyancy_mj.kernels.damping import DampingArrays
-from buoyancy_mj.kernels.hulls import Hulls, Scratch
+from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.kernels.passes import IDS, Causes, Loads, Record
+from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays

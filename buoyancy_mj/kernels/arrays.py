@@ -4,6 +4,8 @@ A field is annotated as `Annotated[Doubles, (n, 3)]`. The shape has a number for
 a word for each that varies. A field of MuJoCo's structs also names the struct that holds it, as
 `Annotated[Doubles, "mjData", ("nbody", 3)]`: its name is MuJoCo's, and so are the words in its shape.
 A field without a shape is one number. A field may be such a NamedTuple itself.
+
+Kernels read the arrays out of a NamedTuple before they loop over them: each reading counts references.
 """
 
 import functools

@@ -134,17 +134,17 @@ def add_radiation(
 
     At the centroid of what is wet, on the velocity there relative to the waves, held as for `add_drag`.
     """
-    water, v = np.empty(3), np.empty(6)
+    water, v, radiation = np.empty(3), np.empty(6), damping.radiation
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
     for n in range(damping.bodies.shape[0]):
-        b, radiation = damping.bodies[n], damping.radiation[n]
-        if not centres[b, VOLUME] > 0.0 or not radiation[WATERPLANE] > 0.0:
+        b = damping.bodies[n]
+        if not centres[b, VOLUME] > 0.0 or not radiation[n, WATERPLANE] > 0.0:
             continue
         area = 0.0
         for h in range(owners.shape[0]):
             if owners[h] == b:
                 area += wet[h, WATERPLANE_AREA]
-        share = min(max(area / radiation[WATERPLANE], 0.0), 1.0)
+        share = min(max(area / radiation[n, WATERPLANE], 0.0), 1.0)
         if share == 0.0:
             continue
 
@@ -158,9 +158,9 @@ def add_radiation(
         # the force against it, held
         mass, inertias = rigid_body(damping, bodies, n)
         apparent = _apparent(mass, inertias, at, bodies.xipos[b])
-        up = -min(share * radiation[HEAVE], apparent * rate) * heave
-        roll = -min(share * radiation[ROLL], inertias[0] * rate) * v[3]
-        pitch = -min(share * radiation[PITCH], inertias[1] * rate) * v[4]
+        up = -min(share * radiation[n, HEAVE], apparent * rate) * heave
+        roll = -min(share * radiation[n, ROLL], inertias[0] * rate) * v[3]
+        pitch = -min(share * radiation[n, PITCH], inertias[1] * rate) * v[4]
         f = up * r[6], up * r[7], up * r[8], roll, pitch, 0.0
         _add(r, at, bodies.xipos[b], f, out[b])
 

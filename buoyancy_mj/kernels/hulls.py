@@ -35,12 +35,3 @@ class Hulls(NamedTuple):
     """Typical wave numbers of the sea by depth, see `pressure.typical` [rad/m]."""
     frames: Annotated[Words, ("h",)]
     """Index of the frame of each hull among the geoms."""
-
-
-class Scratch(NamedTuple):
-    """Arrays to work in, for one thread."""
-
-    depths: Annotated[Doubles, (5, "v")]
-    """As long as the most vertices of a leaf."""
-    swell: Annotated[Doubles, ("w", 7)]
-    """The waves around a hull."""

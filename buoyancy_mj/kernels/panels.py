@@ -95,16 +95,17 @@ def _add_hull(panels, hulls, h, bodies, b, geoms, sea, time, water, velocity, fr
     c0, c1, c2 = triple(hulls.whole, h, WHOLE_MIDDLE)
     x, y, _ = place(origin, r, c0, c1, c2)
     eta, gx, gy = tangent(sea.waves, x, y, time)
+    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
     for t in range(hulls.spans[node, tree.FIRST_FACE], hulls.spans[node, tree.END_FACE]):
         # what of the triangle is wet
-        px, py, pz = _corner(hulls, t, 0, origin, r)
-        qx, qy, qz = _corner(hulls, t, 1, origin, r)
-        ox, oy, oz = _corner(hulls, t, 2, origin, r)
+        px, py, pz = _corner(vertices, faces, t, 0, origin, r)
+        qx, qy, qz = _corner(vertices, faces, t, 1, origin, r)
+        ox, oy, oz = _corner(vertices, faces, t, 2, origin, r)
         dp = sea.level + eta + gx * (px - x) + gy * (py - y) - pz
         dq = sea.level + eta + gx * (qx - x) + gy * (qy - y) - qz
         do = sea.level + eta + gx * (ox - x) + gy * (oy - y) - oz
         share = _wet_share(dp, dq, do)
-        nx, ny, nz = rotate(r, hulls.areas[t, 0], hulls.areas[t, 1], hulls.areas[t, 2])
+        nx, ny, nz = rotate(r, areas[t, 0], areas[t, 1], areas[t, 2])
         size = math.sqrt(nx * nx + ny * ny + nz * nz)
         if share == 0.0 or size == 0.0:
             continue
@@ -152,9 +153,9 @@ def _held(damping, bodies, n, timestep, fastest, f):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _corner(hulls, t, k, origin, r):
+def _corner(vertices, faces, t, k, origin, r):
     """Corner k of a triangle, in the world."""
-    x, y, z = triple(hulls.vertices, hulls.faces[t, k], 0)
+    x, y, z = triple(vertices, faces[t, k], 0)
     return place(origin, r, x, y, z)
 
 

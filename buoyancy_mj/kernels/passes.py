@@ -76,7 +76,7 @@ def add_up(loads, engine, gravity, scratch, record):
         loads: `Loads`, what acts.
         engine: `multibody.Engine`, how the bodies lie and move.
         gravity: downward acceleration [m/s^2].
-        scratch: `hulls.Scratch`.
+        scratch: `scratch.Scratch`.
         record: `Record`; `wet` is read, all else up to `total` is written.
     """
     sea, bodies, time, timestep = loads.sea, engine.bodies, engine.time, engine.option.timestep
@@ -89,7 +89,7 @@ def add_up(loads, engine, gravity, scratch, record):
     # each load
     wrenches.add_buoyancy(wet, owners, specific_weight, bodies.xipos, causes.buoyancy)
     if sea.pressure != PressureModel.archimedes and sea.waves.shape[0] > 0:
-        pressure.press_hulls(loads.hulls, engine.geoms, sea, time, scratch.depths[0], record.heads)
+        pressure.press_hulls(loads.hulls, engine.geoms, sea, time, scratch.pressure, record.heads)
         wrenches.add_wave_pressure(
             record.heads,
             wet,

@@ -5,12 +5,11 @@ polynomial that holds all others, see `local`.
 """
 
 import math
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 from numba import njit
 
 from buoyancy_mj.kernels import local
-from buoyancy_mj.kernels.arrays import Doubles
 from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
 from buoyancy_mj.kernels.series import bend, doublings
@@ -56,16 +55,12 @@ class Plane(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """The rest of the elevation around a hull, over the plane."""
+    """The rest of the elevation around a hull, but for its arrays: the near waves, and the coefficients of the polynomial."""
 
-    swell: Annotated[Doubles, ("w", COLUMNS)]
-    """The near waves."""
     count: int
-    """How many there are."""
-    flat: Annotated[Doubles, (local.FLAT,)]
-    """Coefficients of the polynomial, without those of the plane."""
+    """How many waves are near."""
     degree: int
-    """Its degree."""
+    """Degree of the polynomial."""
     smooth: bool
     """Whether it holds any wave."""
     doubled: int
@@ -75,14 +70,14 @@ class Rest(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def approach(sea, origin, r, whole, h, time, swell, flat):
-    """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane`, and a `Rest` that lies in `swell` and `flat`."""
+def approach(level, waves, origin, r, whole, h, time, swell, flat):
+    """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane`, and a `Rest` whose arrays are `swell` and `flat`."""
     c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
-    eta, s0, s1, s2, near, change = _gather(sea.waves, origin, r, whole, h, time, swell, flat)
+    eta, s0, s1, s2, near, change = _gather(waves, origin, r, whole, h, time, swell, flat)
 
     # the plane, as the depth under it: d + g (x - c)
     g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
-    height = sea.level + eta - origin[2]
+    height = level + eta - origin[2]
     d = height - (r[6] * c0 + r[7] * c1 + r[8] * c2)
     still = d - (g0 * c0 + g1 * c1 + g2 * c2)
     gx, gy, _ = rotate(r, s0, s1, s2)
@@ -90,9 +85,9 @@ def approach(sea, origin, r, whole, h, time, swell, flat):
 
     # the rest
     panels = min(max(1, math.ceil(change / PANEL)), PANELS)
-    smooth = near < sea.waves.shape[0]
+    smooth = near < waves.shape[0]
     degree = int(whole[h, DEGREE])
-    return plane, Rest(swell, near, flat, degree, smooth, doublings(change), panels)
+    return plane, Rest(near, degree, smooth, doublings(change), panels)
 
 
 @njit(cache=True, error_model="numpy")
@@ -138,26 +133,31 @@ def _gather(waves, origin, r, whole, h, time, swell, flat):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def depth_under(plane, vertices, n):
-    """Depth of a vertex under the plane."""
+def depth_under(plane, point):
+    """Depth under the plane of a point in the hull's frame."""
     g0, g1, g2 = plane.gradient
-    return plane.origin_depth + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
+    return plane.origin_depth + g0 * point[0] + g1 * point[1] + g2 * point[2]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def depth_away(plane, away):
+    """Depth under the plane of a point that is `away` from the middle of the hull, in its frame."""
+    g0, g1, g2 = plane.gradient
+    return plane.depth + g0 * away[0] + g1 * away[1] + g2 * away[2]
 
 
 @njit(cache=True, error_model="numpy")
-def add_rest(vertices, first, last, middle, r, rest, depths, room):
+def add_rest(vertices, first, last, middle, r, rest, swell, flat, depths, room):
     """Add the rest to depths under the plane, of vertices from `first` up to `last`; `room` is scratch."""
     c0, c1, c2 = middle
     if rest.smooth:
         for n in range(first, last):
             x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
             room[0, n - first], room[1, n - first] = x, y
-        add_at_many(
-            rest.flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths
-        )
+        add_at_many(flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths)
     for w in range(rest.count):
-        crest, slope = rest.swell[w, CREST], rest.swell[w, SLOPE]
-        k0, k1, k2 = triple(rest.swell, w, K)
+        crest, slope = swell[w, CREST], swell[w, SLOPE]
+        k0, k1, k2 = triple(swell, w, K)
         shift = k0 * c0 + k1 * c1 + k2 * c2
         for n in range(first, last):
             angle = k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - shift
@@ -165,13 +165,23 @@ def add_rest(vertices, first, last, middle, r, rest, depths, room):
             depths[n - first] += crest * cosine - slope * sine
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def seen_from_above(plane, r, p, q):
+    """Two points of the hull's frame from above, along x and y of the world, from the middle of the hull."""
+    c0, c1, c2 = plane.middle
+    px, py, _ = rotate(r, p[0] - c0, p[1] - c1, p[2] - c2)
+    qx, qy, _ = rotate(r, q[0] - c0, q[1] - c1, q[2] - c2)
+    return px, py, qx, qy
+
+
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(px, py, qx, qy, plane, rest, ray):
-    """Integrals of e, x e, y e and (plane + e / 2) e over the triangle from the middle of the hull to a cut p q.
+def waterplane_moments(ends, plane, rest, swell, flat, ray):
+    """Integrals of e, x e, y e and (plane + e / 2) e over the triangle from the middle of the hull to the `ends` of a cut.
 
     All is seen from above. By Gauss outward, in panels of at most `PANEL` / k, and along the cut;
     `ray` is scratch.
     """
+    px, py, qx, qy = ends
     gx, gy = plane.slope
     i0 = ix = iy = iz = 0.0
     apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
@@ -180,16 +190,16 @@ def waterplane_moments(px, py, qx, qy, plane, rest, ray):
         along, share = _ONE[0] if slim else _TWO[n]
         ex, ey = px + along * (qx - px), py + along * (qy - py)
         if rest.smooth:
-            set_along_ray(rest.flat, rest.degree, ex, ey, ray)
+            set_along_ray(flat, rest.degree, ex, ey, ray)
         for panel in range(rest.panels):
             for out, weight in _FOUR:
                 u = (panel + out) / rest.panels
                 x, y = u * ex, u * ey
                 e = on_ray(ray, rest.degree, u) if rest.smooth else 0.0
                 for w in range(rest.count):
-                    kx, ky = rest.swell[w, K_WORLD], rest.swell[w, K_WORLD + 1]
+                    kx, ky = swell[w, K_WORLD], swell[w, K_WORLD + 1]
                     sine, cosine = bend(kx * x + ky * y, rest.doubled)
-                    e += rest.swell[w, CREST] * cosine - rest.swell[w, SLOPE] * sine
+                    e += swell[w, CREST] * cosine - swell[w, SLOPE] * sine
                 e_dA = u * weight * share / rest.panels * e
                 i0 += e_dA
                 ix += x * e_dA

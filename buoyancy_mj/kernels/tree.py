@@ -49,12 +49,15 @@ def node_after(spans, node, answered):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def spread_in_box(boxes, node, g0, g1, g2, curvature):
-    """By how much a function can differ within a node's box, by its gradient in the middle and a bound of its curvature."""
-    e0, e1, e2 = boxes[node, HALF], boxes[node, HALF + 1], boxes[node, HALF + 2]
-    return (
-        abs(g0) * e0 + abs(g1) * e1 + abs(g2) * e2 + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
-    )
+def spread_in_box(half, gradient, curvature):
+    """By how much a function can differ from its value in the middle of a box with half sides (3).
+
+    The gradient is that in the middle; `curvature` bounds that of the function everywhere.
+    """
+    e0, e1, e2 = half
+    g0, g1, g2 = gradient
+    straight = abs(g0) * e0 + abs(g1) * e1 + abs(g2) * e2
+    return straight + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
 
 
 # building

@@ -56,19 +56,20 @@ def waterplanes(
 @njit(cache=True, error_model="numpy")
 def _walk(hulls, h, corner, r, still, mx, my, depths, row):
     """Add the waterplane of a hull about its middle to a row, by the tree over its triangles."""
-    vertices, spans, boxes = hulls.vertices, hulls.spans, hulls.boxes
+    vertices, faces, spans, boxes = hulls.vertices, hulls.faces, hulls.spans, hulls.boxes
     i, end = hulls.nodes[h], hulls.nodes[h + 1]
     while i < end:
         b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
+        half = triple(boxes, i, tree.HALF)
         depth = still - (r[6] * b0 + r[7] * b1 + r[8] * b2)
-        missed = abs(depth) >= tree.spread_in_box(boxes, i, r[6], r[7], r[8], 0.0)
+        missed = abs(depth) >= tree.spread_in_box(half, (r[6], r[7], r[8]), 0.0)
         if not missed and tree.is_leaf(spans, i):
             base = spans[i, tree.FIRST_VERTEX]
             for n in range(base, spans[i, tree.END_VERTEX]):
                 x, y, z = triple(vertices, n, 0)
                 depths[n - base] = still - (r[6] * x + r[7] * y + r[8] * z)
             for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
-                _add_triangle(vertices, hulls.faces, f, base, depths, corner, r, mx, my, row)
+                _add_triangle(vertices, faces, f, base, depths, corner, r, mx, my, row)
         i = tree.node_after(spans, i, missed)
 
 

@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.errors import MethodError
 from buoyancy_mj.kernels import clip, local, pressure, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
-from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls, Scratch
+from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
+from buoyancy_mj.kernels.scratch import Scratch, new_scratch
 from buoyancy_mj.kernels.sea import PressureModel, Sea
 from buoyancy_mj.meshes.mesh import TriMesh, refine
 from buoyancy_mj.meshes.tree import Tree, grow_tree
@@ -96,8 +97,7 @@ class PackedHulls:
         spans = self.hulls.spans
         leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
         vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
-        most = int(vertices[leaves].max())
-        self.scratch = Scratch(np.empty((5, most)), np.empty((len(self._sea.waves), 7)))
+        self.scratch: Scratch = new_scratch(int(vertices[leaves].max()), len(self._sea.waves))
         """Where `submerge` and `press` work."""
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
         """Volume that the whole meshes displace (h,) [m^3]."""
@@ -118,7 +118,8 @@ class PackedHulls:
     ) -> NDArray[np.float64]:
         """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
         geoms = Geoms(positions, rotations)
-        clip.submerge_hulls(self.hulls, geoms, self._sea, time, self.scratch, self.results)
+        sea, scratch = self._sea, self.scratch.cut
+        clip.submerge_hulls(self.hulls, geoms, sea.level, sea.waves, time, scratch, self.results)
         return self.results
 
     def press(
@@ -137,7 +138,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             self._sea._replace(pressure=int(model)),
             time,
-            self.scratch.depths[0],
+            self.scratch.pressure,
             rows,
         )
         return rows
@@ -155,7 +156,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             about,
             self._sea.level,
-            self.scratch.depths[0],
+            self.scratch.cut.depths[0],
             rows,
         )
         return rows

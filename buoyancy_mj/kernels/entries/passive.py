@@ -13,9 +13,9 @@ from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import Words
 from buoyancy_mj.kernels.entries.pointers import call, exchange
 from buoyancy_mj.kernels.entries.views import view, view_engine
-from buoyancy_mj.kernels.hulls import Scratch
 from buoyancy_mj.kernels.multibody import Engine, Identity, Option, downward_gravity
 from buoyancy_mj.kernels.passes import DATA, MODEL, Loads, Record
+from buoyancy_mj.kernels.scratch import Scratch
 
 
 class Links(NamedTuple):
@@ -95,8 +95,9 @@ def _submerge(model, data, water, place, record):
     if table.links.submerge != 0:
         return call(table.links.submerge, water, data, record, 0)
     engine = view_engine(model, data, table.offsets, Engine)
-    scratch, loads = view(place, Workplace).scratch, table.loads
-    clip.submerge_hulls(loads.hulls, engine.geoms, loads.sea, engine.time, scratch, results.wet)
+    scratch, loads = view(place, Workplace).scratch.cut, table.loads
+    level, waves = loads.sea.level, loads.sea.waves
+    clip.submerge_hulls(loads.hulls, engine.geoms, level, waves, engine.time, scratch, results.wet)
     return 0
 
 
