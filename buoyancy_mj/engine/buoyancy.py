@@ -19,6 +19,7 @@ from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels import clip, wrenches
+from buoyancy_mj.kernels.multibody import downward_gravity
 from buoyancy_mj.kernels.passes import Record
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
@@ -264,14 +265,15 @@ class Buoyancy:
         Raises:
             ModelError: it is not along -z.
         """
-        x, y, z = self.model.opt.gravity
-        if self.model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY:
-            return 0.0
-        if x != 0.0 or y != 0.0 or z > 0.0:
+        option = self.model.opt
+        gravity = float(downward_gravity(option.gravity, option.disableflags))
+        if math.isnan(gravity):
+            x, y, z = option.gravity
             raise ModelError(
-                f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: set <option gravity='0 0 -9.81'/>"
+                f"gravity is {x:g} {y:g} {z:g}; water needs it along -z: "
+                "set <option gravity='0 0 -9.81'/>"
             )
-        return -float(z)
+        return gravity
 
 
 def parse_pressure(name: str, method: Method) -> PressureModel:

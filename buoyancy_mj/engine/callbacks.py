@@ -41,8 +41,8 @@ def lend(water: Lendable, native: bool | None, *, copies: bool) -> Iterator[None
     refuse_actuation(water.model)
     if plugin_instances(water.model):
         raise ModelError(
-            f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would double it: "
-            "leave out the one or the other"
+            f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would "
+            "double it: leave out the one or the other"
         )
     if is_lent(water):
         yield
@@ -89,9 +89,9 @@ def refuse_actuation(model: mujoco.MjModel) -> None:
     """
     if model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_ACTUATION:
         raise ModelError(
-            "this model disables actuation, and MuJoCo then skips the control callback through which water acts: "
-            "remove <flag actuation='disable'/>, and disable single actuators by <option actuatorgroupdisable> instead, "
-            "or put the water into the model (add_water)"
+            "this model disables actuation, and MuJoCo then skips the control callback through "
+            "which water acts: remove <flag actuation='disable'/>, and disable single actuators "
+            "by <option actuatorgroupdisable> instead, or put the water into the model (add_water)"
         )
 
 
@@ -122,7 +122,7 @@ def _compiled(
 
 
 def _in_python(water: Lendable, previous: Any) -> Callable[[mujoco.MjModel, mujoco.MjData], None]:
-    """The callback in Python: first the one that was there before, then the water on its own model."""
+    """The callback in Python: first the previous one, then the water on its own model."""
 
     def callback(model: mujoco.MjModel, data: mujoco.MjData) -> None:
         if hasattr(previous, "argtypes"):

@@ -1,4 +1,4 @@
-"""`LoadModel`: all that acts on the bodies of a model, resolved to arrays; what one pass of the water needs."""
+"""`LoadModel`: all that acts on the bodies of a model, resolved to arrays."""
 
 import dataclasses
 import functools
@@ -48,10 +48,15 @@ class LoadModel:
         """Whether the pressure differs from Archimedes': on still water it does not."""
         return "wave_pressure" in self.causes and len(self.arrays.sea.waves) > 0
 
-    @property
+    @functools.cached_property
     def scratch(self) -> Scratch:
         """Arrays to work in, for Python."""
-        return self.packed.scratch if isinstance(self.packed, PackedHulls) else empty(Scratch)
+        return self.new_scratch()
+
+    def new_scratch(self) -> Scratch:
+        """Arrays to work in, for one more thread."""
+        packed = self.packed
+        return packed.new_scratch() if isinstance(packed, PackedHulls) else empty(Scratch)
 
     def record(self, bodies: int, inertias: int) -> Record:
         """Room for what one pass leaves.

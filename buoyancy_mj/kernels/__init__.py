@@ -1,7 +1,8 @@
 """Arrays in, numbers out, compiled by Numba: no engine, no dataclass and no file is known here.
 
 Numba keeps compiled kernels beside their source and compiles anew when that one file changes, but
-not when a kernel of another file changes that it has built in. So what is older than any source goes.
+not when a kernel of another file changes that it has built in. So what is older than any source
+goes.
 """
 
 import contextlib
@@ -25,7 +26,7 @@ def _drop_stale(folder: Path) -> None:
 
 
 class _Patience(event.Listener):  # type: ignore[misc]
-    """Tells once that it takes a while, when a kernel is compiled that no earlier run has left compiled."""
+    """Says once that compiling takes a while, when a kernel is compiled anew."""
 
     def __init__(self) -> None:
         self._told = False
@@ -34,11 +35,10 @@ class _Patience(event.Listener):  # type: ignore[misc]
         """A function begins to be compiled."""
         if not self._told and event.data["dispatcher"].py_func.__module__.startswith(__name__):
             self._told = True
-            print(
-                "buoyancy_mj: compiling, once per installation; this takes about half a minute",
-                file=sys.stderr,
-                flush=True,
+            sys.stderr.write(
+                "buoyancy_mj: compiling, once per installation; this takes about half a minute\n"
             )
+            sys.stderr.flush()
 
     def on_end(self, event: Any) -> None:
         """It is done."""

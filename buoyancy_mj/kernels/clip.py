@@ -54,13 +54,17 @@ def submerge_hulls(
     scratch,  # `scratch.CutScratch`
     out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
 ):
-    """The submersion of each hull; only hulls that the surface may cut cost more than a few operations."""
+    """Write the submersion of each hull to `out`.
+
+    Only hulls that the surface may cut cost more than a few operations.
+    """
     wholes, frames = hulls.whole, hulls.frames
     positions, rotations = geoms.geom_xpos, geoms.geom_xmat
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
 
-        # how deep the middle of its box lies, and how much shallower or deeper any point of it can be
+        # how deep the middle of its box lies, and how much shallower or deeper any point of it can
+        # be
         c0, c1, c2 = triple(wholes, h, WHOLE_MIDDLE)
         e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
         x, y, z = place(origin, r, c0, c1, c2)
@@ -101,7 +105,10 @@ def _set_whole(out, h, wholes, origin, r, area, waterplane):
 
 @njit(cache=True, error_model="numpy")
 def _set_wet(out, h, wholes, origin, r, v, mx, my, mz, area, waterplane):
-    """Write the results of a hull that the surface cuts, from its volume and first moments about the origin."""
+    """Write the results of a hull that the surface cuts, by its volume and first moments.
+
+    The moments are about the origin of the hull's frame, in the world's axes.
+    """
     # never more than all of it, and below the rounding of the sums there is no centroid to speak of
     if v >= wholes[h, WHOLE_VOLUME]:
         _set_whole(out, h, wholes, origin, r, area, waterplane)
@@ -116,7 +123,9 @@ def _set_wet(out, h, wholes, origin, r, v, mx, my, mz, area, waterplane):
 
 @njit(cache=True, error_model="numpy")
 def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
-    """Volume of a hull, first moments about its origin, horizontal and wetted area, by the tree over its triangles.
+    """Volume of a hull, its first moments, waterplane and wetted area, by its tree.
+
+    The moments are about the origin of the hull's frame, in the world's axes.
 
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their
     moments. `curvature` is a bound of the surface's over the hull.
@@ -126,7 +135,7 @@ def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
     vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
     spans, boxes, node_moments = hulls.spans, hulls.boxes, hulls.moments
     plane, rest = swell.approach(level, waves, origin, r, hulls.whole, h, time, near, flat)
-    wavy = rest.count > 0 or rest.smooth
+    wavy = rest.near > 0 or rest.smooth
 
     # seven integrals over the wet side, and four of e over the waterplane
     total, extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
@@ -145,8 +154,7 @@ def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
             total = _sum(total, part)
         elif not dry and tree.is_leaf(spans, i):
             first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
-            for n in range(first, last):
-                depths[n - first] = swell.depth_under(plane, triple(vertices, n, 0))
+            swell.set_depths(vertices, first, last, plane, depths)
             if wavy:
                 swell.add_rest(
                     vertices, first, last, plane.middle, r, rest, near, flat, depths, room
@@ -189,7 +197,10 @@ def _sum_four(a, b):
 
 @njit(cache=True, error_model="numpy")
 def _add_rest_of_node(depth, gradient, away, r, rest, near, flat):
-    """Add to the depth of the middle of a node's box, `away` from that of the hull, and to its gradient what the rest has."""
+    """Add what the rest of the elevation has to the depth of a node's middle, and to its gradient.
+
+    The middle of the node's box is `away` from that of the hull.
+    """
     y0, y1, y2 = away
     h0, h1, h2 = gradient
     if rest.smooth:
@@ -199,7 +210,7 @@ def _add_rest_of_node(depth, gradient, away, r, rest, near, flat):
         h0 = h0 + sx * r[0] + sy * r[3]
         h1 = h1 + sx * r[1] + sy * r[4]
         h2 = h2 + sx * r[2] + sy * r[5]
-    for w in range(rest.count):
+    for w in range(rest.near):
         crest, slope = near[w, swell.CREST], near[w, swell.SLOPE]
         k0, k1, k2 = triple(near, w, swell.K)
         angle = k0 * y0 + k1 * y1 + k2 * y2
@@ -214,7 +225,10 @@ def _add_rest_of_node(depth, gradient, away, r, rest, near, flat):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _moments_of_node(m, middle, r, under, gradient):
-    """The seven integrals over a node that is wholly wet, by its moments m, with the depth `under` the plane at its middle."""
+    """The seven integrals over a node that is wholly wet, by its moments m.
+
+    The middle of its box lies `under` the plane.
+    """
     # contracted with the vertical
     s = _vertical(m, tree.VECTOR, r)
     t0, t1, t2 = _vertical(m, tree.X, r), _vertical(m, tree.Y, r), _vertical(m, tree.Z, r)
@@ -256,6 +270,9 @@ def _sum(a, b):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _corner(vertex, depth, plane, wavy):
-    """A vertex as a corner of a triangle; its depth under the surface is that under the plane, but in waves."""
+    """A vertex as a corner of a triangle, with its depth under the plane.
+
+    Without waves that is the depth under the surface.
+    """
     x, y, z = vertex
     return x, y, z, swell.depth_under(plane, vertex) if wavy else depth

@@ -1,7 +1,7 @@
 """Pressure over a node of the tree, by a quadratic about its middle and the moments of its area.
 
-The quadratic is known by its values at 13 places in the node, which several nodes gather, so that the
-processor works on several at once.
+The quadratic is known by its values at 13 places in the node, which several nodes gather, so that
+the processor works on several at once.
 """
 
 import math
@@ -15,8 +15,12 @@ from buoyancy_mj.kernels.vectors import place, triple
 
 _STENCIL = (
     (0.0, 0.0, 0.0),
-    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
-    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0), (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0), (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
+    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0), (0.0, -1.0, 0.0),
+    (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
+    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0),
+    (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0),
+    (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
 )  # fmt: skip
 """Places in a node at which a quadratic is known by its values."""
 NODES = PLACES // len(_STENCIL)
@@ -35,7 +39,8 @@ def add_node(asked, nodes, count, near, setting, sums, moments, boxes, node, ori
         count: how many wait.
         near: the waves around the hull, see `local.gather`.
         setting: a `quadrature.Setting`.
-        sums: force over rho g [m^3], and torque about the origin over rho g [m^4] (6,), in the hull's frame; written.
+        sums: force over rho g [m^3], and torque about the origin over rho g [m^4] (6,), in the
+            hull's frame; written.
         moments: of all nodes.
         boxes: of all nodes.
         node: the node.
@@ -73,7 +78,9 @@ def sum_nodes(asked, nodes, count, near, setting, sums, moments, boxes):
 
 @njit(cache=True, error_model="numpy")
 def _add(m, box, head, first, sums):
-    """Add force and torque of the head over a node with moments m about the middle of its box, about the origin.
+    """Add force and torque of the head over a node, about the origin.
+
+    Its moments m are about the middle of its box.
 
     The heads at its places stand in a row from `first`.
     """
@@ -115,7 +122,10 @@ def _add(m, box, head, first, sums):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _force(m, c, p, g, h):
-    """Component c of the integral of a quadratic head over the area: value, gradient, second derivatives."""
+    """Component c of the integral of a quadratic head over the area.
+
+    The head has a value p, a gradient g and second derivatives h.
+    """
     return (
         p * m[tree.VECTOR + c] + g[0] * m[tree.X + c] + g[1] * m[tree.Y + c] + g[2] * m[tree.Z + c]
         + h[0] * m[tree.XX + c] + h[1] * m[tree.YY + c] + h[2] * m[tree.ZZ + c]

@@ -1,8 +1,8 @@
 """The water's pressure in waves, integrated over the wet side of hulls: forces and torques.
 
 By a tree of moments: a wet node that is small beside the waves is answered by its moments, with the
-pressure as a quadratic about its middle, see `expansions`; elsewhere triangles are cut at the surface
-and summed at points, see `quadrature`.
+pressure as a quadratic about its middle, see `expansions`; elsewhere triangles are cut at the
+surface and summed at points, see `quadrature`.
 """
 
 import math
@@ -21,13 +21,15 @@ from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY, swing
 
 SMALL = 0.3
-"""Half the diagonal of a node, times the typical wave number, for which moments do: to SMALL^3 / 6 of the pressure."""
+"""Half the diagonal of a node, times the typical wave number, for moments: to SMALL^3 / 6."""
 DEPTHS = 16
 """Depths for which the typical wave number is known."""
 
 
 def typical(waves: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Wave numbers (DEPTHS,) [rad/m] of a single wave as high as all at the surface, whose third derivatives are as large.
+    """Wave numbers (DEPTHS,) [rad/m] of one wave that stands for all waves of a sea.
+
+    It is as high as all at the surface, and its third derivatives are as large.
 
     At depths of 0, 1, 2, ... over the first of them: the pressure of short waves fades soonest.
     """
@@ -47,9 +49,13 @@ def press_hulls(
     sea,  # `sea.Sea`
     time,  # [s]
     scratch,  # `scratch.PressureScratch`
-    out,  # (h, 6) force over rho g [m^3] and torque over rho g about the frame's origin [m^4], world frame
+    out,  # (h, 6)
 ):
-    """The pressure of the water on the wet side of each hull."""
+    """Write the pressure of the water, integrated over the wet side of each hull, to `out`.
+
+    That is a force over rho g [m^3], and a torque about the origin of the hull's frame over rho g
+    [m^4], in the world's axes.
+    """
     wholes, frames, typical = hulls.whole, hulls.frames, hulls.typical
     vertices, faces, areas, nodes = hulls.vertices, hulls.faces, hulls.areas, hulls.nodes
     spans, boxes, moments = hulls.spans, hulls.boxes, hulls.moments
@@ -110,7 +116,10 @@ def press_hulls(
 
 @njit(cache=True, error_model="numpy")
 def _gather(level, waves, wholes, h, origin, r, time, dynamic, near):
-    """Bring the waves to a hull, unless it is dry; returns whether it is, and a bound of their curvature over it."""
+    """Bring the waves to a hull that is not dry.
+
+    Returns whether it is dry, and a bound of the surface's curvature over it.
+    """
     c0, c1, c2 = triple(wholes, h, WHOLE_MIDDLE)
     e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
     x, y, z = place(origin, r, c0, c1, c2)
@@ -128,7 +137,10 @@ def _add_leaf(
     vertices, faces, areas, spans, i, r, near, setting, wet, corners, depths,
     points, count, sums, most,
 ):  # fmt: skip
-    """Add the wet parts of the triangles of a leaf, see `quadrature.add_wet_part`; returns how many points wait then."""
+    """Add the wet parts of the triangles of a leaf, see `quadrature.add_wet_part`.
+
+    Returns how many points wait then.
+    """
     first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
 
     # depths of the vertices, where some may be dry

@@ -1,8 +1,10 @@
-"""Pressure over triangles, summed by rules at points, which are gathered so that the processor works on several at once.
+"""Pressure over triangles, summed by rules at points.
+
+The points are gathered, so that the processor works on several at once.
 
 A triangle is a tuple of three corners, from the still level, and its vector area. One that is small
-beside the waves needs one point or three; larger ones are divided into pieces with the rule of degree
-5 of Radon (1948).
+beside the waves needs one point or three; larger ones are divided into pieces with the rule of
+degree 5 of Radon (1948).
 """
 
 import math
@@ -16,9 +18,9 @@ from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
 
 POINT = 0.1
-"""Longest edge of a triangle, times the wave number, for which one point is enough, to POINT^2 / 36."""
+"""Longest edge of a triangle, times the wave number, for one point: to POINT^2 / 36."""
 TINY = 0.3
-"""Longest edge of a triangle, times the wave number, for which three points are enough, to TINY^3 / 200."""
+"""Longest edge of a triangle, times the wave number, for three points: to TINY^3 / 200."""
 PIECE = 1.5
 """Longest edge of a piece of a triangle, times the wave number."""
 PIECES = 32
@@ -55,7 +57,8 @@ def add_wet_part(points, count, near, setting, sums, p, q, o, dp, dq, do, area, 
     """Add the wet part of a triangle with depths at its corners.
 
     Args:
-        points: a room of `local` for `PLACES`, and the vector area of each point in three more rows.
+        points: a room of `local` for `PLACES`, and the vector area of each point in three more
+            rows.
         count: how many points wait there.
         near: the waves around the hull, see `local.gather`.
         setting: a `Setting`.
@@ -94,7 +97,9 @@ def add_wet_part(points, count, near, setting, sums, p, q, o, dp, dq, do, area, 
 
 @njit(cache=True, error_model="numpy")
 def _add_triangle(points, count, near, setting, sums, p, q, o, area, most):
-    """Add the points of a rule over a wet triangle, with their shares of its area; returns how many points wait then.
+    """Add the points of a rule over a wet triangle, with their shares of its area.
+
+    Returns how many points wait then.
 
     Where there are more than the room holds, those that wait are summed.
     """
@@ -176,7 +181,7 @@ def _put(points, n, near, x, y, z, share, area):
 
 @njit(cache=True, error_model="numpy")
 def sum_points(points, count, near, setting, sums):
-    """Add force and torque about the origin of all points that wait; returns that none do any more."""
+    """Add force and torque about the origin of all points that wait; returns 0, for none wait."""
     heads(near, points, count, setting.time, setting.dynamic)
     ox, oy = setting.origin[0] - near[local.X], setting.origin[1] - near[local.Y]
     oz = setting.origin[2]

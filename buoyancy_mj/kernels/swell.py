@@ -1,4 +1,6 @@
-"""The waves around one hull, in its own frame: a plane that touches the surface over its middle, and a rest.
+"""The waves around one hull, in its own frame: a plane that touches the surface, and a rest.
+
+The plane touches the surface over the middle of the hull.
 
 The rest e(x, y) of the elevation is that of the near waves, which are taken one by one, and of a
 polynomial that holds all others, see `local`.
@@ -17,8 +19,8 @@ from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, phase_at
 
 CREST, SLOPE, K, K_WORLD, COLUMNS = 0, 1, 2, 5, 7
-"""Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave vector in the hull's
-frame (3) and in the world's (2)."""
+"""Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave
+vector in the hull's frame (3) and in the world's (2)."""
 
 # Gauss-Legendre points and weights between 0 and 1
 _ONE = ((0.5, 1.0),)
@@ -34,7 +36,8 @@ PANEL = 2.0
 PANELS = 256
 """Most of them: no ripple is resolved that is shorter than a hundredth of the hull."""
 SLIM = 1e-3
-"""Square of the ends' distance, over that of their distances from the middle, for which one point along a cut is enough."""
+"""Square of the ends' distance, over that of their distances from the middle, for which one point
+along a cut is enough."""
 
 
 class Plane(NamedTuple):
@@ -55,9 +58,12 @@ class Plane(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """The rest of the elevation around a hull, but for its arrays: the near waves, and the coefficients of the polynomial."""
+    """The rest of the elevation around a hull, but for its arrays.
 
-    count: int
+    Those are the near waves, and the coefficients of the polynomial.
+    """
+
+    near: int
     """How many waves are near."""
     degree: int
     """Degree of the polynomial."""
@@ -71,7 +77,10 @@ class Rest(NamedTuple):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def approach(level, waves, origin, r, whole, h, time, swell, flat):
-    """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane`, and a `Rest` whose arrays are `swell` and `flat`."""
+    """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane` and a `Rest`.
+
+    The arrays of the rest are `swell` and `flat`.
+    """
     c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
     eta, s0, s1, s2, near, change = _gather(waves, origin, r, whole, h, time, swell, flat)
 
@@ -94,8 +103,8 @@ def approach(level, waves, origin, r, whole, h, time, swell, flat):
 def _gather(waves, origin, r, whole, h, time, swell, flat):
     """Sort the waves around a hull: near ones go to `swell`, all others into the polynomial `flat`.
 
-    Returns the elevation over the middle, from the still level; its gradient in the hull's frame; how
-    many waves are near; and by how much the phase of any changes over the hull.
+    Returns the elevation over the middle, from the still level; its gradient in the hull's frame;
+    how many waves are near; and by how much the phase of any changes over the hull.
     """
     eta = g0 = g1 = g2 = steepest = 0.0
     degree, limit = int(whole[h, DEGREE]), whole[h, LIMIT]
@@ -146,16 +155,26 @@ def depth_away(plane, away):
     return plane.depth + g0 * away[0] + g1 * away[1] + g2 * away[2]
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def set_depths(vertices, first, last, plane, depths):
+    """Write the depths under the plane of vertices from `first` up to `last`."""
+    for n in range(first, last):
+        depths[n - first] = depth_under(plane, triple(vertices, n, 0))
+
+
 @njit(cache=True, error_model="numpy")
 def add_rest(vertices, first, last, middle, r, rest, swell, flat, depths, room):
-    """Add the rest to depths under the plane, of vertices from `first` up to `last`; `room` is scratch."""
+    """Add the rest to depths under the plane, of vertices from `first` up to `last`.
+
+    `room` is scratch.
+    """
     c0, c1, c2 = middle
     if rest.smooth:
         for n in range(first, last):
             x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
             room[0, n - first], room[1, n - first] = x, y
         add_at_many(flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths)
-    for w in range(rest.count):
+    for w in range(rest.near):
         crest, slope = swell[w, CREST], swell[w, SLOPE]
         k0, k1, k2 = triple(swell, w, K)
         shift = k0 * c0 + k1 * c1 + k2 * c2
@@ -167,7 +186,10 @@ def add_rest(vertices, first, last, middle, r, rest, swell, flat, depths, room):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def seen_from_above(plane, r, p, q):
-    """Two points of the hull's frame from above, along x and y of the world, from the middle of the hull."""
+    """Two points of the hull's frame, seen from above, from the middle of the hull.
+
+    Their coordinates are along x and y of the world.
+    """
     c0, c1, c2 = plane.middle
     px, py, _ = rotate(r, p[0] - c0, p[1] - c1, p[2] - c2)
     qx, qy, _ = rotate(r, q[0] - c0, q[1] - c1, q[2] - c2)
@@ -176,7 +198,9 @@ def seen_from_above(plane, r, p, q):
 
 @njit(cache=True, error_model="numpy")
 def waterplane_moments(ends, plane, rest, swell, flat, ray):
-    """Integrals of e, x e, y e and (plane + e / 2) e over the triangle from the middle of the hull to the `ends` of a cut.
+    """Integrals of e, x e, y e and (plane + e / 2) e over a triangle of the waterplane.
+
+    Its corners are the middle of the hull and the `ends` of a cut.
 
     All is seen from above. By Gauss outward, in panels of at most `PANEL` / k, and along the cut;
     `ray` is scratch.
@@ -196,7 +220,7 @@ def waterplane_moments(ends, plane, rest, swell, flat, ray):
                 u = (panel + out) / rest.panels
                 x, y = u * ex, u * ey
                 e = on_ray(ray, rest.degree, u) if rest.smooth else 0.0
-                for w in range(rest.count):
+                for w in range(rest.near):
                     kx, ky = swell[w, K_WORLD], swell[w, K_WORLD + 1]
                     sine, cosine = bend(kx * x + ky * y, rest.doubled)
                     e += swell[w, CREST] * cosine - swell[w, SLOPE] * sine

@@ -1,7 +1,8 @@
-"""Where a level surface cuts hulls: area, moments and extents of the waterplane, along the waterline.
+"""The waterplane of hulls at a level: area, moments and extents, along the waterline.
 
 By Gauss each is summed over the triangles from one point to the pieces of the waterline, whose ends
-are where the surface cuts the edges of the mesh: exact, and only triangles at the surface are visited.
+are where the surface cuts the edges of the mesh: exact, and only triangles at the surface are
+visited.
 """
 
 import math
@@ -14,8 +15,9 @@ from buoyancy_mj.kernels.triangles import cut
 from buoyancy_mj.kernels.vectors import place, triple
 
 AREA, X, Y, XX, XY, YY, LOW_X, LOW_Y, HIGH_X, HIGH_Y, COLUMNS = range(11)
-"""Columns of one row of results, and how many: integrals of 1, x, y, x x, x y and y y over the waterplane, each times the
-part that displaces; and the lowest x, y and the highest x, y of the waterline."""
+"""Columns of one row of results, and how many: integrals of 1, x, y, x x, x y and y y over the
+waterplane, each times the part that displaces; and the lowest x, y and the highest x, y of the
+waterline."""
 INTEGRALS, LOWEST, HIGHEST = slice(AREA, LOW_X), slice(LOW_X, HIGH_X), slice(HIGH_X, COLUMNS)
 """The same columns in groups."""
 

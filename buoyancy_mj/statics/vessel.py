@@ -14,6 +14,7 @@ from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.selection import body_name
 from buoyancy_mj.kernels import clip, waterplane
+from buoyancy_mj.kernels.multibody import downward_gravity
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import PackedHulls
@@ -252,15 +253,12 @@ def build_vessel_from_hulls(
 ) -> Vessel:
     """A vessel of a model, with these hulls; see `build_vessel`."""
     sea = water or Water()
-    x, y, z = model.opt.gravity
-    if (
-        x != 0.0
-        or y != 0.0
-        or not z < 0.0
-        or model.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY
-    ):
+    gravity = float(downward_gravity(model.opt.gravity, model.opt.disableflags))
+    if not gravity > 0.0:
+        x, y, z = model.opt.gravity
         raise ModelError(
-            f"gravity is {x:g} {y:g} {z:g} or disabled; floating needs it along -z, as in gravity='0 0 -9.81'"
+            f"gravity is {x:g} {y:g} {z:g} or disabled; floating needs it along -z, "
+            "as in gravity='0 0 -9.81'"
         )
     root = _root(model, [one.body for one in hulls], body)
     data = mujoco.MjData(model)
@@ -287,7 +285,7 @@ def build_vessel_from_hulls(
         qpos=data.qpos.copy(),
         root=root,
         water=sea,
-        gravity=-float(z),
+        gravity=gravity,
         mass=mass,
         inertia=inertia,
         root_from_vessel=centre,

@@ -26,7 +26,8 @@ _TREES: WeakKeyDictionary[TriMesh, dict[float, Tree]] = WeakKeyDictionary()
 
 @dataclasses.dataclass(frozen=True)
 class Exact:
-    """The volume and centroid of what is under the surface, exact on the mesh: the default everywhere.
+    """The volume and centroid of what is under the surface, exact on the mesh: the default
+    everywhere.
 
     Raises:
         MethodError: a tolerance that is not positive.
@@ -34,7 +35,8 @@ class Exact:
 
     name: ClassVar[str] = "exact"
     tolerance: float = 2e-3
-    """In waves, the part of a body's volume that straight cuts of its triangles may miss at worst, see `longest_edge`.
+    """In waves, the part of a body's volume that straight cuts of its triangles may miss at worst,
+    see `longest_edge`.
 
     That is where a side lies flat in the surface. Elsewhere they miss of second order, a hundredth
     of that and less; and on still water nothing."""
@@ -46,7 +48,8 @@ class Exact:
             or not 0.0 < self.tolerance <= 1.0
         ):
             raise MethodError(
-                f"tolerance is {self.tolerance!r}; it must be a part of the volume, above 0 and at most 1"
+                f"tolerance is {self.tolerance!r}; it must be a part of the volume, "
+                "above 0 and at most 1"
             )
 
     def pack(
@@ -83,7 +86,8 @@ class PackedHulls:
         Args:
             meshes: the hulls (h).
             frames: which row of positions and rotations places each (h,).
-            bodies: hulls of one number (h,) move together; errors in waves are seen against their joint volume.
+            bodies: hulls of one number (h,) move together; errors in waves are seen against their
+                joint volume.
             water: the sea.
             tolerance: see `Exact`.
             fills: part of each mesh's volume that displaces water (h,); None for all of it.
@@ -97,12 +101,17 @@ class PackedHulls:
         spans = self.hulls.spans
         leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
         vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
-        self.scratch: Scratch = new_scratch(int(vertices[leaves].max()), len(self._sea.waves))
+        self._most = int(vertices[leaves].max())
+        self.scratch = self.new_scratch()
         """Where `submerge` and `press` work."""
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
         """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion (h, 6): volume, centroid, wetted area, waterplane area."""
+
+    def new_scratch(self) -> Scratch:
+        """Arrays for kernels to work in."""
+        return new_scratch(self._most, len(self._sea.waves))
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -116,7 +125,9 @@ class PackedHulls:
         time: float,
         run: int = 0,
     ) -> NDArray[np.float64]:
-        """Submersion of all hulls at a time [s], written to and returned as `results`; see `methods.Packed`."""
+        """Submersion of all hulls at a time [s], written to and returned as `results`; see
+        `methods.Packed`.
+        """
         geoms = Geoms(positions, rotations)
         sea, scratch = self._sea, self.scratch.cut
         clip.submerge_hulls(self.hulls, geoms, sea.level, sea.waves, time, scratch, self.results)
@@ -149,7 +160,9 @@ class PackedHulls:
         rotations: NDArray[np.float64],
         about: NDArray[np.float64],
     ) -> NDArray[np.float64]:
-        """Waterplanes of all hulls on the still level about a point (h, 10), see `kernels.waterplane.waterplanes`."""
+        """Waterplanes of all hulls on the still level about a point (h, 10), see
+        `kernels.waterplane.waterplanes`.
+        """
         rows = np.empty((len(self.volumes), waterplane.COLUMNS))
         waterplane.waterplanes(
             self.hulls,
@@ -187,7 +200,8 @@ def _hulls(
         t.spans + np.array([f, f, v, v, n]) for t, (f, v, n) in zip(trees, starts, strict=True)
     ]
 
-    # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area itself stays
+    # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area
+    # itself stays
     moments = np.concatenate([t.moments for t in trees])
     moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
     a, b, c = vertices[faces.T]
@@ -225,7 +239,8 @@ def _tree(mesh: TriMesh, edge: float) -> Tree:
 
 
 def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> float:
-    """Longest edge [m] of triangles that follow the waves well enough, for hulls of a volume and an area.
+    """Longest edge [m] of triangles that follow the waves well enough, for hulls of a volume and an
+    area.
 
     A chord of length e under a curve of curvature c is off by c e^2 / 12 on average. That matters
     where the surface cuts triangles alone: no more than half the hull's surface faces up or down

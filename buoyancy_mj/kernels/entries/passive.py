@@ -1,4 +1,4 @@
-"""The water as an engine written in C calls it: addresses in, generalized forces added where those point.
+"""The water as an engine written in C calls it: by the addresses of mjModel and mjData.
 
 What is known of the water, what a pass leaves and where it works stand in tables, see
 `entries.views`: those of `WaterTable`, `passes.Record` and `Workplace`.
@@ -28,7 +28,8 @@ class Links(NamedTuple):
     act: int
     """The C function `act`."""
     submerge: int
-    """A function that submerges the hulls in place of `clip.submerge_hulls`, of water, mjData and record."""
+    """A function that submerges the hulls in place of `clip.submerge_hulls`, of water, mjData and
+    record."""
     error: int
     """MuJoCo's mju_error."""
     gravity_text: int
@@ -62,7 +63,7 @@ class Workplace(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def _evaluate(model, data, water, place, record):
-    """One pass: the loads go into a record, and are added to the engine's passive forces and mass matrix.
+    """Run one pass: fill a record, and add its loads to the engine's forces and mass matrix.
 
     Returns 0, or the address of a text that tells why it cannot.
     """
@@ -112,7 +113,11 @@ def _take_workplace(water):
 
 
 def act(model: int64, data: int64, water: int64, record: int64) -> int64:
-    """Act on data at a workplace of the pool, with its record if none is given; 0, or the address of a text."""
+    """Act on data at a free workplace, and leave the loads in a record.
+
+    A record of 0 stands for the one of the workplace. Returns 0, or the address of a text that
+    tells what failed.
+    """
     place = _take_workplace(water)
     room = view(place, Workplace)
     text = _evaluate(model, data, water, place, record if record != 0 else room.record)
@@ -133,7 +138,7 @@ def act_or_fail(model, data, water, record):
 
 
 def callback(model: int64, data: int64, water: int64, previous: int64, copies: int64) -> void:
-    """A callback of the engine: first the one that was there before, then the water, if the model is its own.
+    """A callback of the engine: the previous callback, then the water on its own model.
 
     With `copies` the water acts on all models of the same compilation signature too.
     """
