@@ -1,4 +1,4 @@
-"""Water for MuJoCo: any MJCF vehicle floats, rights itself, rides waves, exact on its own meshes."""
+"""Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, on its own meshes."""
 
 import dataclasses
 from importlib.metadata import version

@@ -14,7 +14,10 @@ _TEXTS: collections.deque[Any] = collections.deque(maxlen=256)
 
 
 def wrap_python(function: Callable[[int, int, int], None]) -> Any:
-    """A Python function of three words as a C function that gives 0, or the address of a text if it raises."""
+    """A Python function of three words as a C function.
+
+    The C function returns 0, or the address of a text if the function raises.
+    """
 
     def called(first: int, second: int, third: int) -> int:
         try:

@@ -1,4 +1,4 @@
-"""What compiled code needs to act without Python: tables of the water and of where results go, and C functions."""
+"""`CompiledWater`: tables and C functions by which compiled code acts without Python."""
 
 import ctypes
 import functools
@@ -17,9 +17,9 @@ from buoyancy_mj.kernels.entries import passive
 from buoyancy_mj.kernels.entries.closures import Closure, compile_kernel
 from buoyancy_mj.kernels.entries.passive import Links, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
-from buoyancy_mj.kernels.hulls import Scratch
 from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS
 from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
+from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.submersion.exact import PackedHulls
 
 THREADS = 64
@@ -51,7 +51,9 @@ class CompiledWater:
         require_known_layout()
         self._load_model, self._lock = load_model, lock
         self._sizes, self._geoms = (model.nbody, model.nC), model.ngeom
-        self._workers = [_Worker(load_model.scratch, self._new_record()) for _ in range(THREADS)]
+        self._workers = [
+            _Worker(load_model.new_scratch(), self._new_record()) for _ in range(THREADS)
+        ]
         self._submerge = wrap_python(self._submerged)
         self._text = encode_text(
             "gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>"
@@ -91,7 +93,7 @@ class CompiledWater:
         return Closure(passive.callback, self.address, previous, int(copies))
 
     def record(self, model: int) -> Table[Record]:
-        """A record for one data of the model at an address, in use until `ALIVE` of its `ids` is 0."""
+        """A record for one data of the model at an address, in use while `ids[ALIVE]` is 1."""
         if len(self._records) >= self._room:
             self._records = [record for record in self._records if record.arrays.ids[ALIVE]]
             self._room = 2 * len(self._records) + 16
@@ -106,7 +108,10 @@ class CompiledWater:
         return any(record.arrays.ids[ALIVE] for record in self._records)
 
     def last_record(self, data: int) -> Record | None:
-        """What the last pass left of the data at an address; None if none did, or many others came after it."""
+        """The record of the last pass over the data at an address; None if there is none.
+
+        It is gone too when many others came after it.
+        """
         records = [record for record in self._all_records() if record.ids[DATA] == data]
         return max(records, key=lambda record: float(record.instant[0]), default=None)
 
@@ -151,8 +156,7 @@ class _Worker:
     def __init__(self, scratch: Scratch, record: Table[Record]) -> None:
         self.record = record
         self._taken = np.zeros(1, np.int64)
-        room = Scratch(*(np.empty_like(array) for array in scratch))
-        self.table = Table(Workplace(room, self._taken.ctypes.data, record.address))
+        self.table = Table(Workplace(scratch, self._taken.ctypes.data, record.address))
 
 
 @functools.cache
@@ -165,7 +169,8 @@ def require_known_layout() -> None:
     theirs = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY), int(mujoco.mjtSolver.mjSOL_PGS)
     if theirs != (NO_GRAVITY, PGS):
         raise EngineError(
-            f"MuJoCo {mujoco.__version__} has other flags than expected; use buoyancy.installed(native=False)"
+            f"MuJoCo {mujoco.__version__} has other flags than expected; "
+            "use buoyancy.installed(native=False)"
         )
     layout.verify(PATHS)
     layout.symbol("mju_error")

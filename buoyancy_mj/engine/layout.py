@@ -1,4 +1,4 @@
-"""Where MuJoCo keeps its numbers: byte offsets in mjModel and mjData, and the functions of its library."""
+"""Where MuJoCo keeps its numbers: byte offsets in its structs, and functions of its library."""
 
 import contextlib
 import ctypes
@@ -13,7 +13,10 @@ from mujoco.introspect import ast_nodes, structs
 
 from buoyancy_mj.errors import EngineError
 
-_MEND = "the water then acts through Python alone: use buoyancy.installed(native=False), or another version of MuJoCo"
+_MEND = (
+    "the water then acts through Python alone: use buoyancy.installed(native=False), "
+    "or another version of MuJoCo"
+)
 _TYPES: dict[str, Any] = {
     "mjtNum": ctypes.c_double,
     "double": ctypes.c_double,
@@ -57,7 +60,10 @@ def offset(path: str) -> int:
 
 
 def content(path: str, address: int) -> bytes:
-    """A copy of the array that a pointer field, as 'mjModel.geom_size', of the struct at an address points to."""
+    """A copy of the array that a pointer field of a struct points to.
+
+    The path is as 'mjModel.geom_size'; the struct is at an address.
+    """
     size, extent = _pointed(path)
     for n in extent:
         size *= (
@@ -125,7 +131,8 @@ def verify(paths: Sequence[str]) -> None:
             right = kind.from_address(address).value == value
         if not right:
             raise EngineError(
-                f"MuJoCo {mujoco.__version__} does not keep {path} at byte {offset(path)}, as it says itself; {_MEND}"
+                f"MuJoCo {mujoco.__version__} does not keep {path} at byte {offset(path)}, "
+                f"as it says itself; {_MEND}"
             )
 
 
@@ -201,6 +208,7 @@ def _type(declared: Any, owner: str) -> Any:
         return _struct(name)
     if name not in _TYPES:
         raise EngineError(
-            f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; {_MEND}"
+            f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; "
+            f"{_MEND}"
         )
     return _TYPES[name]

@@ -1,4 +1,4 @@
-"""`LoadModel`: all that acts on the bodies of a model, resolved to arrays; what one pass of the water needs."""
+"""`LoadModel`: all that acts on the bodies of a model, resolved to arrays."""
 
 import dataclasses
 import functools
@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels.arrays import conform, empty
 from buoyancy_mj.kernels.damping import DampingArrays
-from buoyancy_mj.kernels.hulls import Hulls, Scratch
+from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.inertia import AddedMass
-from buoyancy_mj.kernels.passes import IDS, Causes, Loads, Record
+from buoyancy_mj.kernels.passes import IDS, Causes, LoadArrays, Record
+from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays
@@ -27,7 +28,7 @@ class LoadModel:
 
     packed: Packed
     """The hulls, ready to be submerged."""
-    arrays: Loads
+    arrays: LoadArrays
     """All that acts, as kernels read it."""
 
     @functools.cached_property
@@ -47,10 +48,15 @@ class LoadModel:
         """Whether the pressure differs from Archimedes': on still water it does not."""
         return "wave_pressure" in self.causes and len(self.arrays.sea.waves) > 0
 
-    @property
+    @functools.cached_property
     def scratch(self) -> Scratch:
         """Arrays to work in, for Python."""
-        return self.packed.scratch if isinstance(self.packed, PackedHulls) else empty(Scratch)
+        return self.new_scratch()
+
+    def new_scratch(self) -> Scratch:
+        """Arrays to work in, for one more thread."""
+        packed = self.packed
+        return packed.new_scratch() if isinstance(packed, PackedHulls) else empty(Scratch)
 
     def record(self, bodies: int, inertias: int) -> Record:
         """Room for what one pass leaves.
@@ -92,7 +98,7 @@ def build_load_model(
         damping: drag of the bodies; None for none.
         added_mass: added mass of the bodies that have one.
     """
-    arrays = Loads(
+    arrays = LoadArrays(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
         bodies=np.unique(owners),

@@ -1,4 +1,4 @@
-"""One pass of the water by Python: the same kernels as compiled code calls, see `kernels.passes`."""
+"""One pass of the water by Python, over the kernels that compiled code calls."""
 
 import mujoco
 

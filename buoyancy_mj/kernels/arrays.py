@@ -1,9 +1,12 @@
-"""NamedTuples of arrays: what kernels are handed, declared once with the dtype and the shape of each array.
+"""NamedTuples of arrays: each array is declared once, with its dtype and its shape.
 
-A field is annotated as `Annotated[Doubles, (n, 3)]`. The shape has a number for each fixed extent and
-a word for each that varies. A field of MuJoCo's structs also names the struct that holds it, as
-`Annotated[Doubles, "mjData", ("nbody", 3)]`: its name is MuJoCo's, and so are the words in its shape.
-A field without a shape is one number. A field may be such a NamedTuple itself.
+A field is annotated as `Annotated[Doubles, (n, 3)]`. The shape has a number for each fixed extent
+and a word for each that varies. A field of MuJoCo's structs also names the struct that holds it, as
+`Annotated[Doubles, "mjData", ("nbody", 3)]`: its name is MuJoCo's, and so are the words in its
+shape. A field without a shape is one number. A field may be such a NamedTuple itself.
+
+Kernels read the arrays out of a NamedTuple before they loop over them: each reading counts
+references.
 """
 
 import functools
@@ -105,8 +108,8 @@ def gather(kind: type[T], structs: Mapping[str, object]) -> T:
 def conform(arrays: T) -> T:
     """The arrays of a NamedTuple as its class declares them, copied only where they are not so yet.
 
-    Kernels are compiled once for each combination of types: these are contiguous, writeable and of the
-    declared dtypes.
+    Kernels are compiled once for each combination of types: these are contiguous, writeable and of
+    the declared dtypes.
     """
     kind = type(arrays)
     return kind._make(  # type: ignore[attr-defined]

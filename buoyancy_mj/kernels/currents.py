@@ -3,12 +3,16 @@
 from numba import njit
 
 PLACE, VELOCITY, TIMED = 0, 1, 4
-"""Columns of a row: a depth [m] or a time [s]; the velocity (3) there [m/s]; and 0 for depths, 1 for times."""
+"""Columns of a row: a depth [m] or a time [s]; the velocity (3) there [m/s]; and 0 for depths, 1
+for times."""
 
 
 @njit(cache=True, error_model="numpy")
 def set_current(rows, depth, time, out):
-    """Write the velocity [m/s] of the current at a depth [m] under the still level and a time [s] to `out` (3,)."""
+    """Write the velocity [m/s] of the current at a depth [m] and a time [s] to `out` (3,).
+
+    The depth is that under the still level.
+    """
     at, share = _between(rows, time if rows[0, TIMED] != 0.0 else depth)
     for c in range(3):
         out[c] = rows[at, VELOCITY + c]

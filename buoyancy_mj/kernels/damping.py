@@ -13,14 +13,14 @@ from buoyancy_mj.kernels.vectors import difference, rotate, triple
 from buoyancy_mj.kernels.waves import add_velocity
 
 HEAVE, ROLL, PITCH, WATERPLANE = range(4)
-"""Columns of `DampingArrays.radiation`: force [N s/m] and torques [N m s] per velocity, and the waterplane [m^2] at which
-they are so."""
+"""Columns of `DampingArrays.radiation`: force [N s/m] and torques [N m s] per velocity, and the
+waterplane [m^2] at which they are so."""
 LINEAR, QUADRATIC = 0, 36
 """Columns of `DampingArrays.matrices` at which the two matrices begin."""
 
 
 class DampingArrays(NamedTuple):
-    """Damping of all bodies that have hulls, along the axes of each body: three forces, three torques."""
+    """Damping of all bodies that have hulls, along the axes of each body."""
 
     bodies: Annotated[Words, ("n",)]
     """Indices of the bodies in the model."""
@@ -37,7 +37,7 @@ class DampingArrays(NamedTuple):
     radiation: Annotated[Doubles, ("n", 4)]
     """Damping by the waves that a body makes, in columns `HEAVE` to `WATERPLANE`."""
     panels: Annotated[Doubles, ("n", 5)]
-    """Drag by panels, in columns `panels.LEADING` to `panels.DENSITY`; no rows if no body has it."""
+    """Drag by panels, in columns `panels.LEADING` to `DENSITY`; no rows if no body has it."""
     members: Annotated[Words, ("m",)]
     """The bodies and all that is welded to each, one after the other."""
     member_starts: Annotated[Words, ("n + 1",)]
@@ -59,12 +59,12 @@ def add_drag(
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     out,  # (nbody, 6)
 ):
-    """Add linear and quadratic damping along each body's axes, scaled with the wet fraction of its volume.
+    """Add linear and quadratic damping along each body's axes, scaled with its wet volume.
 
-    The force acts at the centroid of what is wet, on the velocity there relative to the water, or as
-    Fossen (2021, sec. 6.4) has it, with matrices, at the body's origin. An explicit force must not turn
-    the motion round within a timestep, so each coefficient is held below the body's apparent mass
-    there divided by the timestep; and of matrices, scaled by those masses, the norm.
+    The force acts at the centroid of what is wet, on the velocity there relative to the water, or
+    as Fossen (2021, sec. 6.4) has it, with matrices, at the body's origin. An explicit force must
+    not turn the motion round within a timestep, so each coefficient is held below the body's
+    apparent mass there divided by the timestep; and of matrices, scaled by those masses, the norm.
     """
     water, v, m = np.empty(3), np.empty(6), np.empty(6)
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
@@ -101,7 +101,10 @@ def add_drag(
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _held(matrices, wet, v, masses, rate):
-    """By how much damping by matrices is held, for the norm of it, scaled by masses (6,), to stay below a rate."""
+    """The factor that holds damping by matrices below a rate.
+
+    The norm of the damping, scaled by masses (6,), must not exceed the rate.
+    """
     norm = 0.0
     for i in range(6):
         for j in range(6):
@@ -130,21 +133,24 @@ def add_radiation(
     centres,
     out,
 ):
-    """Add the damping of heave, roll and pitch by the waves that a body makes, scaled with its waterplane.
+    """Add the damping of heave, roll and pitch by the waves that a body makes.
 
-    At the centroid of what is wet, on the velocity there relative to the waves, held as for `add_drag`.
+    It scales with the waterplane of the body.
+
+    At the centroid of what is wet, on the velocity there relative to the waves, held as for
+    `add_drag`.
     """
-    water, v = np.empty(3), np.empty(6)
+    water, v, radiation = np.empty(3), np.empty(6), damping.radiation
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
     for n in range(damping.bodies.shape[0]):
-        b, radiation = damping.bodies[n], damping.radiation[n]
-        if not centres[b, VOLUME] > 0.0 or not radiation[WATERPLANE] > 0.0:
+        b = damping.bodies[n]
+        if not centres[b, VOLUME] > 0.0 or not radiation[n, WATERPLANE] > 0.0:
             continue
         area = 0.0
         for h in range(owners.shape[0]):
             if owners[h] == b:
                 area += wet[h, WATERPLANE_AREA]
-        share = min(max(area / radiation[WATERPLANE], 0.0), 1.0)
+        share = min(max(area / radiation[n, WATERPLANE], 0.0), 1.0)
         if share == 0.0:
             continue
 
@@ -158,16 +164,19 @@ def add_radiation(
         # the force against it, held
         mass, inertias = rigid_body(damping, bodies, n)
         apparent = _apparent(mass, inertias, at, bodies.xipos[b])
-        up = -min(share * radiation[HEAVE], apparent * rate) * heave
-        roll = -min(share * radiation[ROLL], inertias[0] * rate) * v[3]
-        pitch = -min(share * radiation[PITCH], inertias[1] * rate) * v[4]
+        up = -min(share * radiation[n, HEAVE], apparent * rate) * heave
+        roll = -min(share * radiation[n, ROLL], inertias[0] * rate) * v[3]
+        pitch = -min(share * radiation[n, PITCH], inertias[1] * rate) * v[4]
         f = up * r[6], up * r[7], up * r[8], roll, pitch, 0.0
         _add(r, at, bodies.xipos[b], f, out[b])
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def relative_velocity(bodies, b, at, water, out):
-    """Velocity of a body at a place, relative to the water, and its rates, along its axes; written to `out` (6,)."""
+    """Write the velocity of a body relative to the water, and its rotation, to `out` (6,).
+
+    The velocity is that at a place of the body; both are along the body's axes.
+    """
     r, cvel, com = bodies.xmat[b], bodies.cvel[b], bodies.subtree_com[bodies.body_rootid[b]]
     x, y, z = difference(at, com)
     ux = cvel[3] + cvel[1] * z - cvel[2] * y - water[0]
@@ -180,7 +189,10 @@ def relative_velocity(bodies, b, at, water, out):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _apparent(mass, inertias, at, com):
-    """The least mass that a body opposes to a force at a place; 0 without inertia, about which MuJoCo complains itself."""
+    """The least mass that a body opposes to a force at a place.
+
+    It is 0 for a body without inertia, about which MuJoCo itself complains.
+    """
     x, y, z = difference(at, com)
     least = min(inertias[0], inertias[1], inertias[2])
     opposing = least + mass * (x * x + y * y + z * z)
@@ -206,7 +218,7 @@ def _row(matrices, i, v):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add(r, at, com, f, out):
-    """Add a wrench along the axes r, that acts at a place, to `out` (6,) about `com`, world frame."""
+    """Add a wrench along the axes r at a place to `out` (6,), about `com` in the world's axes."""
     fx, fy, fz = rotate(r, f[0], f[1], f[2])
     tx, ty, tz = rotate(r, f[3], f[4], f[5])
     x, y, z = difference(at, com)
@@ -220,7 +232,7 @@ def _add(r, at, com, f, out):
 
 @njit(cache=True, error_model="numpy")
 def rigid_body(damping, bodies, n):
-    """Mass of a body and what is welded to it, and what they oppose to a torque about each of its axes.
+    """Mass of a body with all that is welded to it, and its inertia about each of its axes.
 
     The latter is torque over angular acceleration: one over the diagonal of the inverse inertia.
     """
@@ -259,6 +271,6 @@ def rigid_body(damping, bodies, n):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, x, y, z):
-    """The determinant over the cofactors' quadratic form along an axis; 0 where there is no inertia."""
+    """The determinant over the cofactors' quadratic form along an axis; 0 without inertia."""
     form = cxx * x * x + cyy * y * y + czz * z * z + 2.0 * (cxy * x * y + cxz * x * z + cyz * y * z)
     return determinant / form if form > 0.0 else 0.0

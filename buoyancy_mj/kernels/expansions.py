@@ -1,81 +1,86 @@
 """Pressure over a node of the tree, by a quadratic about its middle and the moments of its area.
 
-The quadratic is known by its values at 13 places in the node, which several nodes gather, so that the
-processor works on several at once.
+The quadratic is known by its values at 13 places in the node, which several nodes gather, so that
+the processor works on several at once.
 """
 
 import math
-from typing import Annotated, NamedTuple
 
 from numba import njit
 
 from buoyancy_mj.kernels import local, tree
-from buoyancy_mj.kernels.arrays import Doubles, Words
-from buoyancy_mj.kernels.local import HEAD, ROOM, heads
+from buoyancy_mj.kernels.local import HEAD, heads
 from buoyancy_mj.kernels.quadrature import PLACES
 from buoyancy_mj.kernels.vectors import place, triple
 
 _STENCIL = (
     (0.0, 0.0, 0.0),
-    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
-    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0), (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0), (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
+    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0), (0.0, -1.0, 0.0),
+    (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
+    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0),
+    (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0),
+    (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
 )  # fmt: skip
 """Places in a node at which a quadratic is known by its values."""
 NODES = PLACES // len(_STENCIL)
 """Nodes that may wait."""
 
 
-class Expansion(NamedTuple):
-    """Nodes that wait for their pressure, and the sums that it goes to."""
-
-    asked: Annotated[Doubles, (ROOM, PLACES)]
-    """A room of `local`."""
-    nodes: Annotated[Words, (NODES,)]
-    """The nodes."""
-    near: Annotated[Doubles, ("n",)]
-    """The waves around the hull, see `local.gather`."""
-    time: float
-    """[s]."""
-    dynamic: bool
-    """Whether the pressure is that of linear waves, or hydrostatic under their surface."""
-    sums: Annotated[Doubles, (6,)]
-    """Force over rho g [m^3], and torque about the origin over rho g [m^4], in the hull's frame."""
-
-
 @njit(cache=True, error_model="numpy")
-def add_node(expansion, count, hulls, node, size, origin, r, level):
-    """Let a wet node of half a diagonal `size` wait; returns how many wait then.
+def add_node(asked, nodes, count, near, setting, sums, moments, boxes, node, origin, r, level):
+    """Let a wet node wait.
 
     Where there are more than the room holds, those that wait are summed.
+
+    Args:
+        asked: a room of `local` for `PLACES`.
+        nodes: the nodes that wait (NODES,).
+        count: how many wait.
+        near: the waves around the hull, see `local.gather`.
+        setting: a `quadrature.Setting`.
+        sums: force over rho g [m^3], and torque about the origin over rho g [m^4] (6,), in the
+            hull's frame; written.
+        moments: of all nodes.
+        boxes: of all nodes.
+        node: the node.
+        origin: of the hull's frame in the world.
+        r: world_from_frame.
+        level: the still level [m].
+
+    Returns:
+        How many wait then.
     """
     if count == NODES:
-        count = sum_nodes(expansion, count, hulls)
-    near, asked, first = expansion.near, expansion.asked, count * len(_STENCIL)
-    b0, b1, b2 = triple(hulls.boxes, node, tree.MIDDLE)
-    s = size / math.sqrt(3.0)
+        count = sum_nodes(asked, nodes, count, near, setting, sums, moments, boxes)
+    first = count * len(_STENCIL)
+    b0, b1, b2 = triple(boxes, node, tree.MIDDLE)
+    e0, e1, e2 = triple(boxes, node, tree.HALF)
+    s = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2) / math.sqrt(3.0)
     for n in range(len(_STENCIL)):
         i, j, k = _STENCIL[n]
         x, y, z = place(origin, r, b0 + s * i, b1 + s * j, b2 + s * k)
         asked[0, first + n], asked[1, first + n] = x - near[local.X], y - near[local.Y]
         asked[2, first + n] = z - level
-    expansion.nodes[count] = node
+    nodes[count] = node
     return count + 1
 
 
 @njit(cache=True, error_model="numpy")
-def sum_nodes(expansion, count, hulls):
+def sum_nodes(asked, nodes, count, near, setting, sums, moments, boxes):
     """Add force and torque of all nodes that wait; returns that none do any more."""
-    asked, size = expansion.asked, len(_STENCIL)
-    heads(expansion.near, asked, count * size, expansion.time, expansion.dynamic)
+    size = len(_STENCIL)
+    heads(near, asked, count * size, setting.time, setting.dynamic)
     for n in range(count):
-        node = expansion.nodes[n]
-        _add(hulls.moments[node], hulls.boxes[node], asked[HEAD], n * size, expansion.sums)
+        _add(moments[nodes[n]], boxes[nodes[n]], asked[HEAD], n * size, sums)
     return 0
 
 
 @njit(cache=True, error_model="numpy")
 def _add(m, box, head, first, sums):
-    """Add force and torque of the head over a node with moments m about the middle of its box, about the origin.
+    """Add force and torque of the head over a node, about the origin.
+
+    Its moments m are about the middle of its box.
 
     The heads at its places stand in a row from `first`.
     """
@@ -117,7 +122,10 @@ def _add(m, box, head, first, sums):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _force(m, c, p, g, h):
-    """Component c of the integral of a quadratic head over the area: value, gradient, second derivatives."""
+    """Component c of the integral of a quadratic head over the area.
+
+    The head has a value p, a gradient g and second derivatives h.
+    """
     return (
         p * m[tree.VECTOR + c] + g[0] * m[tree.X + c] + g[1] * m[tree.Y + c] + g[2] * m[tree.Z + c]
         + h[0] * m[tree.XX + c] + h[1] * m[tree.YY + c] + h[2] * m[tree.ZZ + c]

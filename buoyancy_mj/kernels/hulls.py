@@ -6,14 +6,15 @@ from buoyancy_mj.kernels.arrays import Corners, Doubles, Words
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
 FILL, DEGREE, LIMIT = 11, 12, 13
-"""Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its faces, middle (3) and
-half sides (3) of its bounding box, the part of its volume that displaces water, and its `local.plan` (2)."""
+"""Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its
+faces, middle (3) and half sides (3) of its bounding box, the part of its volume that displaces
+water, and its `local.plan` (2)."""
 AREA_OF_FACE = 3
 """Column of `Hulls.areas` behind the vector area (3)."""
 
 
 class Hulls(NamedTuple):
-    """All hulls of a model, each in its own frame, and the trees over their triangles, see `kernels.tree`."""
+    """All hulls of a model, each in its own frame, and the trees over their triangles."""
 
     vertices: Annotated[Doubles, ("v", 3)]
     """Of all hulls [m]; leaf by leaf, so that leaves share none."""
@@ -35,12 +36,3 @@ class Hulls(NamedTuple):
     """Typical wave numbers of the sea by depth, see `pressure.typical` [rad/m]."""
     frames: Annotated[Words, ("h",)]
     """Index of the frame of each hull among the geoms."""
-
-
-class Scratch(NamedTuple):
-    """Arrays to work in, for one thread."""
-
-    depths: Annotated[Doubles, (5, "v")]
-    """As long as the most vertices of a leaf."""
-    swell: Annotated[Doubles, ("w", 7)]
-    """The waves around a hull."""

@@ -1,8 +1,9 @@
-"""Added mass: into the engine's own mass matrix, and what of it depends on velocities and the water's acceleration.
+"""Added mass: in the engine's mass matrix, and the rest of the water's reaction as a load.
 
-The water opposes a body's motion with -A (dv - du) - C(v - u) (v - u), in the body's axes: v its velocity,
-dv the rate of those components, u the water's there (Fossen 2021, sec. 6.3 and 8.1). The part -A dv that
-goes with the engine's accelerations stands in its mass matrix, so that it cannot be unstable.
+The water opposes a body's motion with -A (dv - du) - C(v - u) (v - u), in the body's axes: v its
+velocity, dv the rate of those components, u the water's there (Fossen 2021, sec. 6.3 and 8.1). The
+part -A dv that goes with the engine's accelerations stands in its mass matrix, so that it cannot be
+unstable.
 """
 
 from typing import Annotated, NamedTuple
@@ -26,7 +27,8 @@ class AddedMass(NamedTuple):
     volumes: Annotated[Doubles, ("n",)]
     """Volume of the hulls of each [m^3]."""
     matrices: Annotated[Doubles, ("n", 36)]
-    """Row by row [kg, kg m, kg m^2]: surge, sway, heave, roll, pitch, yaw along the axes of each body, about its origin."""
+    """Row by row [kg, kg m, kg m^2]: surge, sway, heave, roll, pitch, yaw along the axes of each
+    body, about its origin."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -37,7 +39,10 @@ def add_inertia(
     mass_matrix,  # `multibody.MassMatrix`, written
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
 ):
-    """Add J^T A J of each body to the mass matrix, scaled with the wet part of its volume; returns whether any was."""
+    """Add J^T A J of each body to the mass matrix, scaled with the wet part of its volume.
+
+    Returns whether any body was wet.
+    """
     p, g, u = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     changed = False
     for n in range(added_mass.bodies.shape[0]):
@@ -67,9 +72,10 @@ def _wet_part(centres, b, volume):
 
 @njit(cache=True, error_model="numpy")
 def _to_body(bodies, b, out):
-    """Write the matrix (6, 6) from MuJoCo's velocities to translation and rotation along the axes of a body.
+    """Write the matrix (6, 6) from MuJoCo's velocities of a body to those along its own axes.
 
-    MuJoCo's are rotation, then translation at the root's centre of mass; the body's are at its origin.
+    MuJoCo's are rotation, then translation at the root's centre of mass; the body's are at its
+    origin.
     """
     r = bodies.xmat[b]
     arm = difference(bodies.xpos[b], bodies.subtree_com[bodies.body_rootid[b]])
@@ -97,7 +103,7 @@ def _transform(matrix, p, factor, out):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add_row(joints, mass_matrix, i, u):
-    """Add to row i of the mass matrix the product of the axis of each degree of freedom with u (6,)."""
+    """Add to row i of the mass matrix the products of u (6,) with the axes of its columns."""
     # the columns of a row are the degree of freedom itself, last, and those above it
     first = mass_matrix.M_rowadr[i]
     for e in range(first, first + mass_matrix.M_rownnz[i]):
@@ -117,7 +123,10 @@ def add_reaction(
     centres,
     out,  # (nbody, 6)
 ):
-    """Add the rest of the reaction, about `xipos`: all but -A times what the accelerations of the joints bring."""
+    """Add the reaction about `xipos`, but for the part that goes with the joints' accelerations.
+
+    That part, -A times what the accelerations bring, stands in the mass matrix.
+    """
     p = np.empty((6, 6))
     water, rush = np.empty(3), np.empty(3)
     spin, rate, v, f = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
@@ -185,7 +194,10 @@ def _multiply(matrix, x, out):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add_coriolis(v, momentum, f):
-    """Add C(v) v = (w x p, v x p + w x h), with w the rotation of v, and p, h the momentum A v, to `f` (6,)."""
+    """Add C(v) v = (w x p, v x p + w x h) to `f` (6,).
+
+    w is the rotation in v, and p, h are the momentum A v.
+    """
     p0, p1, p2 = momentum[0], momentum[1], momentum[2]
     h0, h1, h2 = momentum[3], momentum[4], momentum[5]
     w0, w1, w2 = v[3], v[4], v[5]

@@ -1,12 +1,14 @@
 """The waves around a hull as polynomials, by which many of them cost little more than a few.
 
 About the middle of a hull the elevation of a wave, A cos(k.x + phase), is a series in k.x, and the
-series of all waves are one polynomial. A series of degree n leaves less than A (k r)^(n + 1) / (n + 1)!
-out of a wave within a radius r: the degree is as high as the shortest waves need, and waves that are
-too short for `MOST` stay as they are. Pressure is one in x, y and the height under the surface: with
-its Laplacian zero, all of it follows from two layers, its value on a level and its slope there.
+series of all waves are one polynomial. A series of degree n leaves less than A (k r)^(n + 1) / (n +
+1)! out of a wave within a radius r: the degree is as high as the shortest waves need, and waves
+that are too short for `MOST` stay as they are. Pressure is one in x, y and the height under the
+surface: with its Laplacian zero, all of it follows from two layers, its value on a level and its
+slope there.
 
-All that is gathered for a hull stands in one row of numbers, which costs less to hand on than several.
+All that is gathered for a hull stands in one row of numbers, which costs less to hand on than
+several.
 """
 
 import math
@@ -50,21 +52,24 @@ SOLID = size_in_space.py_func(MOST)
 _FACTORIAL = float(math.factorial(MOST + 1))
 
 COUNT, MANY, DEGREE, X, Y, MIDDLE, BOTTOM, SURFACE = range(8)
-"""Columns of a row: how many waves are near, and are in all; the degree; the middle, its height under the surface as
-Wheeler stretches it, and the depth of the water; from SURFACE on the polynomial of the elevation."""
+"""Columns of a row: how many waves are near, and are in all; the degree; the middle, its height
+under the surface as Wheeler stretches it, and the depth of the water; from SURFACE on the
+polynomial of the elevation."""
 PRESSURE = SURFACE + FLAT
 """First column of the polynomial of the pressure."""
 NEAR = PRESSURE + SOLID
 """First column of the near waves, which have `WAVE` numbers each, as in `kernels.waves`."""
 WAVE = 6
 HEAD, ETA, BELOW, ROOM = 3, 4, 5, 9
-"""Rows of a room for many places, after x and y from the middle and z from the still level: the head or the elevation
-there; scratch; and how many rows there are."""
+"""Rows of a room for many places, after x and y from the middle and z from the still level: the
+head or the elevation there; scratch; and how many rows there are."""
 
 
 @njit(cache=True, error_model="numpy")
 def plan(waves, radius):
-    """The degree of the polynomials around a hull of a radius, and up to which `remainder` they hold a wave.
+    """The degree of the polynomials around a hull of a radius, and the limit of what they hold.
+
+    They hold a wave whose `remainder` is below the limit.
 
     All that they leave out is within `ACCURACY` of the radius. The plan is the same at all times.
     """
@@ -111,18 +116,23 @@ def remainder(waves, w, radius):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _angle(waves, w, radius):
-    """By how much the phase changes over a path in a hull, and a fifth more for the part of it that is downward."""
+    """How much the phase changes over a path in a hull.
+
+    A fifth is added for the part of the path that is downward.
+    """
     kx, ky = waves[w, KX], waves[w, KY]
     return 1.2 * math.sqrt(kx * kx + ky * ky) * radius
 
 
 @njit(cache=True, error_model="numpy")
 def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, near):
-    """Bring the waves around a place, given from the still level, into a row `near`, by the `plan` of a hull there.
+    """Bring the waves around a place, given from the still level, into a row `near`.
+
+    The degree and the limit are the `plan` of a hull there.
 
     Waves that the polynomials do not hold are copied as they are; all others go into that of the
-    surface, and with `dynamic` into that of the pressure. The row has NEAR + 6 numbers for each wave;
-    `eta` is the elevation over the place.
+    surface, and with `dynamic` into that of the pressure. The row has NEAR + 6 numbers for each
+    wave; `eta` is the elevation over the place.
     """
     many = waves.shape[0]
     near[:NEAR] = 0.0
@@ -195,7 +205,7 @@ def elevations(near, room, count, time):
 
 @njit(cache=True, error_model="numpy")
 def heads(near, room, count, time, dynamic):
-    """Write `waves.head` at `count` places, rows 0 to 2 of a room, of what was gathered, to row HEAD."""
+    """Write `waves.head` at `count` places, rows 0 to 2 of a room, to row HEAD."""
     z, head = room[2], room[HEAD]
     elevations(near, room, count, time)
     if dynamic:

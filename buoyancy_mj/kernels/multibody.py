@@ -1,4 +1,4 @@
-"""Bodies, joints and geoms as MuJoCo keeps them: what kernels read of mjModel and mjData, under MuJoCo's names."""
+"""Bodies, joints and geoms: what kernels read of mjModel and mjData, under MuJoCo's names."""
 
 import math
 from typing import Annotated, NamedTuple
@@ -119,14 +119,18 @@ PATHS = tuple(
         for path in (field.path, *(f"mjModel.{n}" for n in field.shape if isinstance(n, str)))
     )
 )
-"""Where all of these are in MuJoCo's structs, as "mjData.xpos", and the extents of their arrays, as "mjModel.nbody"."""
+"""Where all of these are in MuJoCo's structs, as "mjData.xpos", and the extents of their arrays, as
+"mjModel.nbody"."""
 NO_GRAVITY, PGS = 1 << 7, 0
 """MuJoCo's mjDSBL_GRAVITY and mjSOL_PGS."""
 
 
 @njit(cache=True, error_model="numpy")
 def downward_gravity(gravity, disableflags):
-    """Downward acceleration [m/s^2] of a model; 0 where its flags disable gravity, NaN where it is not along -z."""
+    """Downward acceleration [m/s^2] of a model; NaN for gravity that is not along -z.
+
+    It is 0 where the model's flags disable gravity.
+    """
     if disableflags & NO_GRAVITY:
         return 0.0
     if gravity[0] != 0.0 or gravity[1] != 0.0 or gravity[2] > 0.0:
@@ -136,7 +140,10 @@ def downward_gravity(gravity, disableflags):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def last_dof(joints, body):
-    """The last degree of freedom that moves a body, from which `dof_parentid` leads to all others; -1 for none."""
+    """The last degree of freedom that moves a body; -1 for none.
+
+    From it `dof_parentid` leads to all others.
+    """
     b = body
     while b > 0 and joints.body_dofnum[b] == 0:
         b = joints.body_parentid[b]

@@ -15,8 +15,8 @@ from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import add_velocity, tangent
 
 LEADING, TRAILING, LENGTH, VISCOSITY, DENSITY = range(5)
-"""Columns of `DampingArrays.panels`: drag coefficients of faces that lead and that trail, length of the body [m],
-kinematic viscosity [m^2/s], and density [kg/m^3], 0 for a body without panels."""
+"""Columns of `DampingArrays.panels`: drag coefficients of faces that lead and that trail, length of
+the body [m], kinematic viscosity [m^2/s], and density [kg/m^3], 0 for a body without panels."""
 LEAST_REYNOLDS = 1e4
 """Below it the line of the ITTC is taken no further: flow there is not turbulent."""
 
@@ -34,12 +34,13 @@ def add_panels(
     wet,  # (h, 6) submersion of the hulls
     out,  # (nbody, 6)
 ):
-    """Add the drag of each wet triangle: pressure by how squarely it meets the flow, and skin friction along it.
+    """Add the drag of each wet triangle: pressure across it, and skin friction along it.
 
-    Of pressure, 1/2 rho C A (u.n)^2 against the normal on faces that lead, away from it on those that
-    trail. Of friction, 1/2 rho C_F A |t| t along the face, t the velocity there, C_F of a smooth plate as
-    long as the body, 0.075 / (log10 Re - 2)^2 (ITTC 1957). The surface is the plane that touches it over
-    the middle of the hull. All is held so that its power stops no more than the motion there is.
+    Of pressure, 1/2 rho C A (u.n)^2 against the normal on faces that lead, away from it on those
+    that trail. Of friction, 1/2 rho C_F A |t| t along the face, t the velocity there, C_F of a
+    smooth plate as long as the body, 0.075 / (log10 Re - 2)^2 (ITTC 1957). The surface is the plane
+    that touches it over the middle of the hull. All is held so that its power stops no more than
+    the motion there is.
     """
     water, v, f = np.empty(3), np.empty(6), np.empty(6)
     for n in range(damping.bodies.shape[0]):
@@ -89,22 +90,26 @@ def add_panels(
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add_hull(panels, hulls, h, bodies, b, geoms, sea, time, water, velocity, friction, f):
-    """Add force, and torque about the centre of mass of the body, on the wet triangles of a hull to `f`."""
+    """Add force and torque on the wet triangles of a hull to `f` (6,).
+
+    The torque is about the centre of mass of the body.
+    """
     origin, r = geoms.geom_xpos[hulls.frames[h]], geoms.geom_xmat[hulls.frames[h]]
     at, spin, node = bodies.xipos[b], bodies.cvel[b], hulls.nodes[h]
     c0, c1, c2 = triple(hulls.whole, h, WHOLE_MIDDLE)
     x, y, _ = place(origin, r, c0, c1, c2)
     eta, gx, gy = tangent(sea.waves, x, y, time)
+    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
     for t in range(hulls.spans[node, tree.FIRST_FACE], hulls.spans[node, tree.END_FACE]):
         # what of the triangle is wet
-        px, py, pz = _corner(hulls, t, 0, origin, r)
-        qx, qy, qz = _corner(hulls, t, 1, origin, r)
-        ox, oy, oz = _corner(hulls, t, 2, origin, r)
+        px, py, pz = _corner(vertices, faces, t, 0, origin, r)
+        qx, qy, qz = _corner(vertices, faces, t, 1, origin, r)
+        ox, oy, oz = _corner(vertices, faces, t, 2, origin, r)
         dp = sea.level + eta + gx * (px - x) + gy * (py - y) - pz
         dq = sea.level + eta + gx * (qx - x) + gy * (qy - y) - qz
         do = sea.level + eta + gx * (ox - x) + gy * (oy - y) - oz
         share = _wet_share(dp, dq, do)
-        nx, ny, nz = rotate(r, hulls.areas[t, 0], hulls.areas[t, 1], hulls.areas[t, 2])
+        nx, ny, nz = rotate(r, areas[t, 0], areas[t, 1], areas[t, 2])
         size = math.sqrt(nx * nx + ny * ny + nz * nz)
         if share == 0.0 or size == 0.0:
             continue
@@ -137,7 +142,10 @@ def _add_hull(panels, hulls, h, bodies, b, geoms, sea, time, water, velocity, fr
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _held(damping, bodies, n, timestep, fastest, f):
-    """By how much `f` is held: its power over a timestep, beside what the body's motion relative to the water holds."""
+    """The factor that holds the power of `f` over a timestep.
+
+    It may stop no more than the body's motion relative to the water.
+    """
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
     spin = bodies.cvel[damping.bodies[n]]
     mass, inertias = rigid_body(damping, bodies, n)
@@ -152,9 +160,9 @@ def _held(damping, bodies, n, timestep, fastest, f):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _corner(hulls, t, k, origin, r):
+def _corner(vertices, faces, t, k, origin, r):
     """Corner k of a triangle, in the world."""
-    x, y, z = triple(hulls.vertices, hulls.faces[t, k], 0)
+    x, y, z = triple(vertices, faces[t, k], 0)
     return place(origin, r, x, y, z)
 
 

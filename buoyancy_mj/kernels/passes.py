@@ -1,6 +1,6 @@
 """One pass of the water over the bodies of a model, called by compiled code and by Python alike.
 
-To add a load: write its kernel, declare its arrays in a NamedTuple of `Loads`, name it in `Causes`,
+To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArrays`, name it in `Causes`,
 and call the kernel in `add_up`.
 """
 
@@ -18,14 +18,15 @@ from buoyancy_mj.kernels.multibody import PGS
 from buoyancy_mj.kernels.sea import PressureModel, Sea
 
 ALIVE, MODEL, DATA, WATER, SIZES, AUGMENTED, IDS = range(7)
-"""Columns of `Record.ids`, and how many: whether the record is in use; addresses of its mjModel, mjData and water; a sum
-over the sizes of the model's geoms; and whether `Record.inertia` is a mass matrix with added mass in it."""
+"""Columns of `Record.ids`, and how many: whether the record is in use; addresses of its mjModel,
+mjData and water; a sum over the sizes of the model's geoms; and whether `Record.inertia` is a mass
+matrix with added mass in it."""
 UNCHANGED, AUGMENT, AUGMENT_DUAL = range(3)
-"""What `apply` did to the mass matrix: nothing; added mass, so that it must be factored anew; the same for a solver of
-the dual problem, whose constraints must be projected anew too."""
+"""What `apply` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
+same for a solver of the dual problem, whose constraints must be projected anew too."""
 
 
-class Loads(NamedTuple):
+class LoadArrays(NamedTuple):
     """All that the water does to the bodies of one model."""
 
     hulls: Hulls
@@ -39,7 +40,10 @@ class Loads(NamedTuple):
 
 
 class Causes(NamedTuple):
-    """Force [N] and torque [N m] about `xipos` on each body, world frame, by cause; no rows for a cause that never acts."""
+    """Force [N] and torque [N m] about `xipos` on each body, world frame, by cause.
+
+    A cause that never acts has no rows.
+    """
 
     buoyancy: Annotated[Doubles, ("nbody", 6)]
     wave_pressure: Annotated[Doubles, ("nbody", 6)]
@@ -56,7 +60,8 @@ class Record(NamedTuple):
     centres: Annotated[Doubles, ("nbody", 4)]
     """Submerged volume of each body [m^3] and its centroid [m]."""
     heads: Annotated[Doubles, ("h", 6)]
-    """Pressure on each hull, see `pressure.press_hulls`; zeros where no model of pressure asks for it."""
+    """Pressure on each hull, see `pressure.press_hulls`; zeros where no model of pressure asks for
+    it."""
     causes: Causes
     total: Annotated[Doubles, ("nbody", 6)]
     """Sum over the causes."""
@@ -73,10 +78,10 @@ def add_up(loads, engine, gravity, scratch, record):
     """Evaluate each load, and the sum of all, from what is wet.
 
     Args:
-        loads: `Loads`, what acts.
+        loads: `LoadArrays`, what acts.
         engine: `multibody.Engine`, how the bodies lie and move.
         gravity: downward acceleration [m/s^2].
-        scratch: `hulls.Scratch`.
+        scratch: `scratch.Scratch`.
         record: `Record`; `wet` is read, all else up to `total` is written.
     """
     sea, bodies, time, timestep = loads.sea, engine.bodies, engine.time, engine.option.timestep
@@ -89,7 +94,7 @@ def add_up(loads, engine, gravity, scratch, record):
     # each load
     wrenches.add_buoyancy(wet, owners, specific_weight, bodies.xipos, causes.buoyancy)
     if sea.pressure != PressureModel.archimedes and sea.waves.shape[0] > 0:
-        pressure.press_hulls(loads.hulls, engine.geoms, sea, time, scratch.depths[0], record.heads)
+        pressure.press_hulls(loads.hulls, engine.geoms, sea, time, scratch.pressure, record.heads)
         wrenches.add_wave_pressure(
             record.heads,
             wet,
@@ -136,7 +141,7 @@ def add_up(loads, engine, gravity, scratch, record):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def apply(loads, engine, record):
-    """Add what `add_up` has found to the engine's passive forces, and the added mass to its mass matrix.
+    """Add the loads of `add_up` to the engine's forces, and the added mass to its mass matrix.
 
     Returns:
         `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
@@ -158,5 +163,8 @@ def apply(loads, engine, record):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _is_augmented(mass, record):
-    """Whether the engine goes over a pass again without computing its mass matrix anew: the added mass is in it already."""
+    """Whether the mass matrix holds the added mass already.
+
+    The engine may go over a pass again without computing its mass matrix anew.
+    """
     return record.ids[AUGMENTED] != 0 and np.array_equal(mass, record.inertia)

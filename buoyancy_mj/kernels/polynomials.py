@@ -24,7 +24,10 @@ def size_in_space(degree):
 
 @njit(cache=True, error_model="numpy")
 def add_series(flat, start, degree, crest, slope, kx, ky):
-    """Add the series of a wave, with A cos and A sin of its phase at the middle, to coefficients in x, y."""
+    """Add the series of a wave to coefficients in x, y.
+
+    The wave has A cos and A sin of its phase at the middle.
+    """
     i = start
     x = 1.0
     for m in range(degree + 1):
@@ -69,7 +72,10 @@ def add_at_many(flat, start, degree, x, y, count, row, total, out):
 
 @njit(cache=True, error_model="numpy")
 def add_in_space_at_many(solid, start, degree, x, y, z, count, row, total, whole, out):
-    """Add a polynomial in x, y, z at `count` places to `out`; `row`, `total` and `whole` are scratch."""
+    """Add a polynomial in x, y, z at `count` places to `out`.
+
+    `row`, `total` and `whole` are scratch.
+    """
     for v in range(count):
         whole[v] = 0.0
     i = start + size_in_space(degree)
@@ -83,7 +89,10 @@ def add_in_space_at_many(solid, start, degree, x, y, z, count, row, total, whole
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _set_at_many(flat, end, degree, x, y, count, row, total):
-    """Write a polynomial in x, y at many places to `total`; its coefficients stand before `end`. Returns where they begin."""
+    """Write a polynomial in x, y at many places to `total`.
+
+    Its coefficients end before `end`. Returns where they begin.
+    """
     i = end
     for v in range(count):
         total[v] = 0.0
@@ -127,7 +136,7 @@ def on_ray(ray, degree, u):
 
 @njit(cache=True, error_model="numpy")
 def deepen(solid, start, degree):
-    """Write the layers z^2 and up of a polynomial whose Laplacian is zero, from its layers z^0 and z^1."""
+    """Write the layers z^2 and up of a polynomial without a Laplacian, from the layers below."""
     below, extent = start, size(degree)
     for p in range(2, degree + 1):
         # layers of two degrees more, one more, and of this

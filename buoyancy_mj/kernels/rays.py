@@ -1,4 +1,4 @@
-"""What a grid of parallel rays sees of a triangle mesh: its silhouette, and how often it encloses space."""
+"""A mesh as a grid of parallel rays sees it: its silhouette, and how often it encloses space."""
 
 import math
 
@@ -8,7 +8,10 @@ from numba import njit
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _left(u, v, i, j, x, y):
-    """Whether (x, y) lies left of the edge from i to j; its two faces never agree, so no ray slips between them."""
+    """Whether (x, y) lies left of the edge from i to j.
+
+    The two faces of an edge never agree, so no ray slips between them.
+    """
     if i < j:
         return (u[j] - u[i]) * (y - v[i]) - (v[j] - v[i]) * (x - u[i]) >= 0.0
     return not (u[i] - u[j]) * (y - v[j]) - (v[i] - v[j]) * (x - u[j]) >= 0.0
@@ -16,7 +19,7 @@ def _left(u, v, i, j, x, y):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _covers(u, v, face, x, y):
-    """1 where a face that winds left, seen from above, covers (x, y), -1 where it winds right, else 0."""
+    """1 where a face that winds left covers (x, y), -1 where it winds right, else 0."""
     left = _left(u, v, face[0], face[1], x, y)
     if _left(u, v, face[1], face[2], x, y) != left or _left(u, v, face[2], face[0], x, y) != left:
         return 0
@@ -46,7 +49,10 @@ def _cells(a, b, c, low, step, count):
 
 @njit(cache=True, error_model="numpy")
 def silhouette(u, v, faces, low, step, grid):
-    """Mark the cells of `grid` (n, m) whose centres low + (i + 1/2) step the triangles (u, v) cover."""
+    """Mark the cells of `grid` (n, m) that the triangles (u, v) cover.
+
+    The centres of the cells are low + (i + 1/2) step.
+    """
     for f in range(faces.shape[0]):
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
         first_u, last_u = _cells(u[i], u[j], u[k], low[0], step[0], grid.shape[0])
@@ -63,7 +69,8 @@ def misenclosed(vertices, faces, count):
     """Volumes enclosed more than once and less than never, by count * count vertical rays.
 
     Along each ray the winding number goes up by one where it enters (n_z < 0) and down where it
-    leaves; space with winding 0 is outside, 1 is inside, anything else is a mesh that crosses itself.
+    leaves; space with winding 0 is outside, 1 is inside, anything else is a mesh that crosses
+    itself.
     """
     low, high = vertices[0].copy(), vertices[0].copy()
     for i in range(vertices.shape[0]):
@@ -95,7 +102,10 @@ def misenclosed(vertices, faces, count):
 
 @njit(cache=True, error_model="numpy")
 def _hit(vertices, faces, low, step, count, listing, places, heights, signs):
-    """Count the hits of each ray in `places`; or, listing, write their heights and signs to where `places` point."""
+    """Count the hits of each ray in `places`; or, listing, write their heights and signs.
+
+    When listing, `places` says where those of each ray go.
+    """
     x, y, z = vertices[:, 0], vertices[:, 1], vertices[:, 2]
     for f in range(faces.shape[0]):
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]

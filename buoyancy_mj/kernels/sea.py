@@ -1,4 +1,4 @@
-"""The water around the hulls: its surface, its current, its density, and how its pressure is modelled."""
+"""The water around the hulls: surface, current, density, and the model of its pressure."""
 
 from enum import IntEnum
 from typing import Annotated, NamedTuple
@@ -6,7 +6,8 @@ from typing import Annotated, NamedTuple
 from buoyancy_mj.kernels.arrays import Doubles
 
 PressureModel = IntEnum("PressureModel", "archimedes hydrostatic froude_krylov", start=0)
-"""Models of the pressure in waves: rho g V upward; that of the depth under the surface; that of linear waves."""
+"""Models of the pressure in waves: rho g V upward; that of the depth under the surface; that of
+linear waves."""
 
 
 class Sea(NamedTuple):

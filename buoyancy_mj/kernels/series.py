@@ -1,4 +1,4 @@
-"""Sine and cosine of several angles at once: by series, which the processor works on in one instruction."""
+"""Sine and cosine by series, which the processor evaluates for several angles at once."""
 
 import math
 
@@ -17,13 +17,13 @@ _C2, _C4, _C6, _C8, _C10, _C12, _C14, _C16, _C18 = (
 
 @njit(cache=True, error_model="numpy")
 def doublings(angle):
-    """How often angles up to this one must be halved for `bend`; 3 for angles that are too large for it."""
+    """How often angles up to this one must be halved for `bend`; 3 for angles too large for it."""
     return 0 if angle <= SHORT else 1 if angle <= 2.0 * SHORT else 2 if angle <= 4.0 * SHORT else 3
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def bend(angle, doubled):
-    """Sine less angle, and cosine less 1, to 1e-13, by series that several angles take at once in one instruction."""
+    """Sine less the angle, and cosine less 1, of an angle, to 1e-13."""
     if doubled == 3:
         return math.sin(angle) - angle, math.cos(angle) - 1.0
     angle *= 1.0 if doubled == 0 else 0.5 if doubled == 1 else 0.25

@@ -38,7 +38,9 @@ def sections(
     heights,  # (n,) ascending values of s
     out,  # (n, 3) area and its first moments int u dA, int v dA
 ):
-    """Cross-sections of a closed mesh perpendicular to s, just above each height; how many triangles they meet.
+    """Write cross-sections of a closed mesh perpendicular to s, just above each height, to `out`.
+
+    Returns how many triangles they meet.
 
     Each triangle that a section meets gives it one edge, its inside on the left, and by Green the
     area is half the sum of cross products of the edges' ends: no contour has to be joined up.

@@ -1,16 +1,17 @@
-"""The waves around one hull, in its own frame: a plane that touches the surface over its middle, and a rest.
+"""The waves around one hull, in its own frame: a plane that touches the surface, and a rest.
+
+The plane touches the surface over the middle of the hull.
 
 The rest e(x, y) of the elevation is that of the near waves, which are taken one by one, and of a
 polynomial that holds all others, see `local`.
 """
 
 import math
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 from numba import njit
 
 from buoyancy_mj.kernels import local
-from buoyancy_mj.kernels.arrays import Doubles
 from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
 from buoyancy_mj.kernels.series import bend, doublings
@@ -18,8 +19,8 @@ from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, phase_at
 
 CREST, SLOPE, K, K_WORLD, COLUMNS = 0, 1, 2, 5, 7
-"""Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave vector in the hull's
-frame (3) and in the world's (2)."""
+"""Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave
+vector in the hull's frame (3) and in the world's (2)."""
 
 # Gauss-Legendre points and weights between 0 and 1
 _ONE = ((0.5, 1.0),)
@@ -35,7 +36,8 @@ PANEL = 2.0
 PANELS = 256
 """Most of them: no ripple is resolved that is shorter than a hundredth of the hull."""
 SLIM = 1e-3
-"""Square of the ends' distance, over that of their distances from the middle, for which one point along a cut is enough."""
+"""Square of the ends' distance, over that of their distances from the middle, for which one point
+along a cut is enough."""
 
 
 class Plane(NamedTuple):
@@ -56,16 +58,15 @@ class Plane(NamedTuple):
 
 
 class Rest(NamedTuple):
-    """The rest of the elevation around a hull, over the plane."""
+    """The rest of the elevation around a hull, but for its arrays.
 
-    swell: Annotated[Doubles, ("w", COLUMNS)]
-    """The near waves."""
+    Those are the near waves, and the coefficients of the polynomial.
+    """
+
     near: int
-    """How many there are."""
-    flat: Annotated[Doubles, (local.FLAT,)]
-    """Coefficients of the polynomial, without those of the plane."""
+    """How many waves are near."""
     degree: int
-    """Its degree."""
+    """Degree of the polynomial."""
     smooth: bool
     """Whether it holds any wave."""
     doubled: int
@@ -75,14 +76,17 @@ class Rest(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def approach(sea, origin, r, whole, h, time, swell, flat):
-    """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane`, and a `Rest` that lies in `swell` and `flat`."""
+def approach(level, waves, origin, r, whole, h, time, swell, flat):
+    """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane` and a `Rest`.
+
+    The arrays of the rest are `swell` and `flat`.
+    """
     c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
-    eta, s0, s1, s2, near, change = _gather(sea.waves, origin, r, whole, h, time, swell, flat)
+    eta, s0, s1, s2, near, change = _gather(waves, origin, r, whole, h, time, swell, flat)
 
     # the plane, as the depth under it: d + g (x - c)
     g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
-    height = sea.level + eta - origin[2]
+    height = level + eta - origin[2]
     d = height - (r[6] * c0 + r[7] * c1 + r[8] * c2)
     still = d - (g0 * c0 + g1 * c1 + g2 * c2)
     gx, gy, _ = rotate(r, s0, s1, s2)
@@ -90,17 +94,17 @@ def approach(sea, origin, r, whole, h, time, swell, flat):
 
     # the rest
     panels = min(max(1, math.ceil(change / PANEL)), PANELS)
-    smooth = near < sea.waves.shape[0]
+    smooth = near < waves.shape[0]
     degree = int(whole[h, DEGREE])
-    return plane, Rest(swell, near, flat, degree, smooth, doublings(change), panels)
+    return plane, Rest(near, degree, smooth, doublings(change), panels)
 
 
 @njit(cache=True, error_model="numpy")
 def _gather(waves, origin, r, whole, h, time, swell, flat):
     """Sort the waves around a hull: near ones go to `swell`, all others into the polynomial `flat`.
 
-    Returns the elevation over the middle, from the still level; its gradient in the hull's frame; how
-    many waves are near; and by how much the phase of any changes over the hull.
+    Returns the elevation over the middle, from the still level; its gradient in the hull's frame;
+    how many waves are near; and by how much the phase of any changes over the hull.
     """
     eta = g0 = g1 = g2 = steepest = 0.0
     degree, limit = int(whole[h, DEGREE]), whole[h, LIMIT]
@@ -138,26 +142,41 @@ def _gather(waves, origin, r, whole, h, time, swell, flat):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def depth_under(plane, vertices, n):
-    """Depth of a vertex under the plane."""
+def depth_under(plane, point):
+    """Depth under the plane of a point in the hull's frame."""
     g0, g1, g2 = plane.gradient
-    return plane.origin_depth + g0 * vertices[n, 0] + g1 * vertices[n, 1] + g2 * vertices[n, 2]
+    return plane.origin_depth + g0 * point[0] + g1 * point[1] + g2 * point[2]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def depth_away(plane, away):
+    """Depth under the plane of a point that is `away` from the middle of the hull, in its frame."""
+    g0, g1, g2 = plane.gradient
+    return plane.depth + g0 * away[0] + g1 * away[1] + g2 * away[2]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def set_depths(vertices, first, last, plane, depths):
+    """Write the depths under the plane of vertices from `first` up to `last`."""
+    for n in range(first, last):
+        depths[n - first] = depth_under(plane, triple(vertices, n, 0))
 
 
 @njit(cache=True, error_model="numpy")
-def add_rest(vertices, first, last, middle, r, rest, depths, room):
-    """Add the rest to depths under the plane, of vertices from `first` up to `last`; `room` is scratch."""
+def add_rest(vertices, first, last, middle, r, rest, swell, flat, depths, room):
+    """Add the rest to depths under the plane, of vertices from `first` up to `last`.
+
+    `room` is scratch.
+    """
     c0, c1, c2 = middle
     if rest.smooth:
         for n in range(first, last):
             x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
             room[0, n - first], room[1, n - first] = x, y
-        add_at_many(
-            rest.flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths
-        )
+        add_at_many(flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths)
     for w in range(rest.near):
-        crest, slope = rest.swell[w, CREST], rest.swell[w, SLOPE]
-        k0, k1, k2 = triple(rest.swell, w, K)
+        crest, slope = swell[w, CREST], swell[w, SLOPE]
+        k0, k1, k2 = triple(swell, w, K)
         shift = k0 * c0 + k1 * c1 + k2 * c2
         for n in range(first, last):
             angle = k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - shift
@@ -165,13 +184,28 @@ def add_rest(vertices, first, last, middle, r, rest, depths, room):
             depths[n - first] += crest * cosine - slope * sine
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def seen_from_above(plane, r, p, q):
+    """Two points of the hull's frame, seen from above, from the middle of the hull.
+
+    Their coordinates are along x and y of the world.
+    """
+    c0, c1, c2 = plane.middle
+    px, py, _ = rotate(r, p[0] - c0, p[1] - c1, p[2] - c2)
+    qx, qy, _ = rotate(r, q[0] - c0, q[1] - c1, q[2] - c2)
+    return px, py, qx, qy
+
+
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(px, py, qx, qy, plane, rest, ray):
-    """Integrals of e, x e, y e and (plane + e / 2) e over the triangle from the middle of the hull to a cut p q.
+def waterplane_moments(ends, plane, rest, swell, flat, ray):
+    """Integrals of e, x e, y e and (plane + e / 2) e over a triangle of the waterplane.
+
+    Its corners are the middle of the hull and the `ends` of a cut.
 
     All is seen from above. By Gauss outward, in panels of at most `PANEL` / k, and along the cut;
     `ray` is scratch.
     """
+    px, py, qx, qy = ends
     gx, gy = plane.slope
     i0 = ix = iy = iz = 0.0
     apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
@@ -180,16 +214,16 @@ def waterplane_moments(px, py, qx, qy, plane, rest, ray):
         along, share = _ONE[0] if slim else _TWO[n]
         ex, ey = px + along * (qx - px), py + along * (qy - py)
         if rest.smooth:
-            set_along_ray(rest.flat, rest.degree, ex, ey, ray)
+            set_along_ray(flat, rest.degree, ex, ey, ray)
         for panel in range(rest.panels):
             for out, weight in _FOUR:
                 u = (panel + out) / rest.panels
                 x, y = u * ex, u * ey
                 e = on_ray(ray, rest.degree, u) if rest.smooth else 0.0
                 for w in range(rest.near):
-                    kx, ky = rest.swell[w, K_WORLD], rest.swell[w, K_WORLD + 1]
+                    kx, ky = swell[w, K_WORLD], swell[w, K_WORLD + 1]
                     sine, cosine = bend(kx * x + ky * y, rest.doubled)
-                    e += rest.swell[w, CREST] * cosine - rest.swell[w, SLOPE] * sine
+                    e += swell[w, CREST] * cosine - swell[w, SLOPE] * sine
                 e_dA = u * weight * share / rest.panels * e
                 i0 += e_dA
                 ix += x * e_dA

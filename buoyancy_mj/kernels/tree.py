@@ -1,9 +1,9 @@
-"""A tree over the triangles of a mesh, in whose nodes stand bounds and moments of the area under them.
+"""A tree over the triangles of a mesh, with bounds and moments of the area under each node.
 
 Nodes are in preorder: the first child of a node comes right behind it, and each node names the one
-behind all that are below it, so that a walk needs no stack; for a leaf that one comes next. The faces
-of a node stand in the order of the tree, and so do its vertices. Each leaf has vertices of its own, so
-that they lie together. A walk goes
+behind all that are below it, so that a walk needs no stack; for a leaf that one comes next. The
+faces of a node stand in the order of the tree, and so do its vertices. Each leaf has vertices of
+its own, so that they lie together. A walk goes
 
     while node < end:
         ...  # look at the node, and decide whether all below it is answered
@@ -24,7 +24,8 @@ import numpy as np
 from numba import njit
 
 FIRST_FACE, END_FACE, FIRST_VERTEX, END_VERTEX, BEHIND, SPAN = range(6)
-"""Columns of the span of a node, and how many: its faces, its vertices, and the node behind all that are below it."""
+"""Columns of the span of a node, and how many: its faces, its vertices, and the node behind all
+that are below it."""
 MIDDLE, HALF, BOX = 0, 3, 6
 """Columns of the box of a node, and how many: its middle (3) and half its sides (3)."""
 VECTOR, X, Y, Z, XX, YY, ZZ, XY, XZ, YZ, AREA = range(0, 31, 3)
@@ -44,17 +45,20 @@ def is_leaf(spans, node):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def node_after(spans, node, answered):
-    """The next node of a walk: the one behind all below this one, where that is answered; else the first below."""
+    """The next node of a walk: behind all below this one if answered, else its first child."""
     return spans[node, BEHIND] if answered else node + 1
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def spread_in_box(boxes, node, g0, g1, g2, curvature):
-    """By how much a function can differ within a node's box, by its gradient in the middle and a bound of its curvature."""
-    e0, e1, e2 = boxes[node, HALF], boxes[node, HALF + 1], boxes[node, HALF + 2]
-    return (
-        abs(g0) * e0 + abs(g1) * e1 + abs(g2) * e2 + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
-    )
+def spread_in_box(half, gradient, curvature):
+    """By how much a function can differ from its value in the middle of a box with half sides (3).
+
+    The gradient is that in the middle; `curvature` bounds that of the function everywhere.
+    """
+    e0, e1, e2 = half
+    g0, g1, g2 = gradient
+    straight = abs(g0) * e0 + abs(g1) * e1 + abs(g2) * e2
+    return straight + 0.5 * curvature * (e0 * e0 + e1 * e1 + e2 * e2)
 
 
 # building
@@ -62,7 +66,9 @@ def spread_in_box(boxes, node, g0, g1, g2, curvature):
 
 @njit(cache=True, error_model="numpy")
 def build(corners, leaf, order, spans):
-    """Sort triangles into a tree: the sides of what is thin apart, else by halves along the widest side of their middles.
+    """Sort triangles into a tree: the sides of what is thin apart, else by halves.
+
+    The halves divide the widest side of the triangles' middles.
 
     Thin is what is a quarter as wide along one axis as along the next; a plate that lies in the
     surface would else be under and above it in every box.
@@ -126,7 +132,9 @@ def _divide(corners, middles, order, low, high):
 
 @njit(cache=True, error_model="numpy")
 def _part_sides(corners, part, axis, order, low):
-    """Write those of a part that face along an axis to the order from `low` on, then those that face against it.
+    """Write those of a part that face along an axis to the order, then those that face against it.
+
+    They go to the order from `low` on.
 
     Returns where the latter begin.
     """
@@ -188,7 +196,10 @@ def spread(faces, spans, vertices, picked):
 
 @njit(cache=True, error_model="numpy")
 def measure(corners, spans, boxes, moments):
-    """Write boxes (nodes, 6) and moments (nodes, 31) of triangles (n, 3, 3) in the order of the tree."""
+    """Write boxes (nodes, 6) and moments (nodes, 31) of triangles (n, 3, 3).
+
+    The triangles stand in the order of the tree.
+    """
     moments[:, :] = 0.0
     y = np.empty((3, 3))
     for node in range(spans.shape[0]):

@@ -8,7 +8,7 @@ from numba import njit
 
 @njit(cache=True, error_model="numpy", inline="always")
 def lone_corner(wet0, wet1, wet2):
-    """Which corner of a triangle that the surface cuts is alone on its side, by which corners are wet."""
+    """Which corner of a triangle that the surface cuts is alone on its side."""
     return 0 if wet1 == wet2 else 1 if wet0 == wet2 else 2
 
 
@@ -26,8 +26,8 @@ def turn(first, p, q, o):
 def moments(a, p, q, o):
     """Integrals of d n_z dA over a wet triangle: plain, times x, y and z, and times d.
 
-    `a` is its signed area seen from above. The integral of a product of linear functions f, g over a
-    triangle of area a is a (sum f sum g + sum f g) / 12.
+    `a` is its signed area seen from above. The integral of a product of linear functions f, g over
+    a triangle of area a is a (sum f sum g + sum f g) / 12.
     """
     x0, y0, z0, d0 = p
     x1, y1, z1, d1 = q
@@ -56,7 +56,9 @@ def _between(p, q, share):
 
 @njit(cache=True, error_model="numpy")
 def cut(a, p, q, o, wp, wq, wo):
-    """The wet part of a triangle that the surface cuts, by the depths w of its corners under the surface.
+    """The wet part of a triangle that the surface cuts.
+
+    w are the depths of its corners under the surface.
 
     Returns its `moments`, its fraction of the area, and the two ends of the cut, such that the
     waterplane lies to the left of the way from the first to the second, seen from above.

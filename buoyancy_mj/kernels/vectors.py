@@ -67,7 +67,7 @@ def distance(p, q):
 
 @njit(cache=True, error_model="numpy")
 def is_rotation(r):
-    """Whether a matrix (3, 3) turns, to one part in a million, and neither stretches nor mirrors."""
+    """Whether a matrix (3, 3) only turns, to one part in a million: no stretch, no mirror."""
     for i in range(3):
         for j in range(i, 3):
             product = r[i, 0] * r[j, 0] + r[i, 1] * r[j, 1] + r[i, 2] * r[j, 2]

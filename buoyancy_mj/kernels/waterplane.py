@@ -1,7 +1,8 @@
-"""Where a level surface cuts hulls: area, moments and extents of the waterplane, along the waterline.
+"""The waterplane of hulls at a level: area, moments and extents, along the waterline.
 
 By Gauss each is summed over the triangles from one point to the pieces of the waterline, whose ends
-are where the surface cuts the edges of the mesh: exact, and only triangles at the surface are visited.
+are where the surface cuts the edges of the mesh: exact, and only triangles at the surface are
+visited.
 """
 
 import math
@@ -14,8 +15,9 @@ from buoyancy_mj.kernels.triangles import cut
 from buoyancy_mj.kernels.vectors import place, triple
 
 AREA, X, Y, XX, XY, YY, LOW_X, LOW_Y, HIGH_X, HIGH_Y, COLUMNS = range(11)
-"""Columns of one row of results, and how many: integrals of 1, x, y, x x, x y and y y over the waterplane, each times the
-part that displaces; and the lowest x, y and the highest x, y of the waterline."""
+"""Columns of one row of results, and how many: integrals of 1, x, y, x x, x y and y y over the
+waterplane, each times the part that displaces; and the lowest x, y and the highest x, y of the
+waterline."""
 INTEGRALS, LOWEST, HIGHEST = slice(AREA, LOW_X), slice(LOW_X, HIGH_X), slice(HIGH_X, COLUMNS)
 """The same columns in groups."""
 
@@ -56,19 +58,20 @@ def waterplanes(
 @njit(cache=True, error_model="numpy")
 def _walk(hulls, h, corner, r, still, mx, my, depths, row):
     """Add the waterplane of a hull about its middle to a row, by the tree over its triangles."""
-    vertices, spans, boxes = hulls.vertices, hulls.spans, hulls.boxes
+    vertices, faces, spans, boxes = hulls.vertices, hulls.faces, hulls.spans, hulls.boxes
     i, end = hulls.nodes[h], hulls.nodes[h + 1]
     while i < end:
         b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
+        half = triple(boxes, i, tree.HALF)
         depth = still - (r[6] * b0 + r[7] * b1 + r[8] * b2)
-        missed = abs(depth) >= tree.spread_in_box(boxes, i, r[6], r[7], r[8], 0.0)
+        missed = abs(depth) >= tree.spread_in_box(half, (r[6], r[7], r[8]), 0.0)
         if not missed and tree.is_leaf(spans, i):
             base = spans[i, tree.FIRST_VERTEX]
             for n in range(base, spans[i, tree.END_VERTEX]):
                 x, y, z = triple(vertices, n, 0)
                 depths[n - base] = still - (r[6] * x + r[7] * y + r[8] * z)
             for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
-                _add_triangle(vertices, hulls.faces, f, base, depths, corner, r, mx, my, row)
+                _add_triangle(vertices, faces, f, base, depths, corner, r, mx, my, row)
         i = tree.node_after(spans, i, missed)
 
 

@@ -12,8 +12,8 @@ from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.vectors import triple
 
 AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH = range(6)
-"""Columns of a row: amplitude [m], wave vector (2) [rad/m], angular frequency [rad/s], phase at the origin at time 0
-[rad], and the depth of the water [m]."""
+"""Columns of a row: amplitude [m], wave vector (2) [rad/m], angular frequency [rad/s], phase at the
+origin at time 0 [rad], and the depth of the water [m]."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -46,7 +46,7 @@ def tangent(waves, x, y, time):
 
 @njit(cache=True, error_model="numpy")
 def swing(waves, x, y, time, radius):
-    """Elevation at a place over the still level, and within a radius how much it can differ and be curved."""
+    """Elevation at a place, and bounds within a radius: how much it differs, and is curved."""
     eta = along = across = height = steepness = curvature = twist = hxx = hxy = hyy = 0.0
     for i in range(waves.shape[0]):
         a, kx, ky = triple(waves, i, AMPLITUDE)
@@ -75,7 +75,9 @@ def swing(waves, x, y, time, radius):
 
 @njit(cache=True, error_model="numpy")
 def head(waves, x, y, z, time, dynamic):
-    """Pressure over rho g [m] at height z over the still level: the depth, or with `dynamic` that of linear waves.
+    """Pressure over rho g [m] at height z over the still level.
+
+    It is the depth under the surface, or with `dynamic` the pressure of linear waves.
 
     Newman 1977, 6.2: the elevation times cosh k (z + h) over cosh k h, less z. Wheeler's stretching
     (1970, J. Petroleum Technology 22, 359) brings the surface to the theory's still level, so that
@@ -103,7 +105,7 @@ def stretch(z, eta, depth):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def fade(k, depth, z):
-    """Cosh and sinh of k (z + h) over cosh k h: how a wave's pressure, and its slope, fade with depth."""
+    """Cosh and sinh of k (z + h) over cosh k h: how a wave's pressure and its slope fade."""
     if k == 0.0:
         return 1.0, 1.0
     even = odd = math.exp(k * z)
@@ -141,7 +143,10 @@ def add_velocity(waves, x, y, z, time, out):
 
 @njit(cache=True, error_model="numpy")
 def add_acceleration(waves, x, y, z, time, out):
-    """Add the rows' orbital acceleration [m/s^2], at one place, to `out` (3,): the rate of `add_velocity` in time."""
+    """Add the rows' orbital acceleration [m/s^2], at one place, to `out` (3,).
+
+    It is the rate of `add_velocity` in time.
+    """
     z = min(z, 0.0)
     for i in range(waves.shape[0]):
         amplitude, kx, ky = triple(waves, i, AMPLITUDE)
@@ -165,7 +170,10 @@ def add_acceleration(waves, x, y, z, time, out):
 
 @njit(cache=True, error_model="numpy")
 def elevations(waves, x, y, time, out):
-    """Write `elevation` at points x, y (n,) to `out` (n,): several at once, by cos a = 1 - 2 sin^2 a/2."""
+    """Write `elevation` at points x, y (n,) to `out` (n,).
+
+    Several are found at once, by cos a = 1 - 2 sin^2 a/2.
+    """
     for i in range(x.shape[0]):
         out[i] = 0.0
     for w in range(waves.shape[0]):
@@ -204,7 +212,10 @@ def velocities(waves, current, points, level, time, out):
 
 @njit(cache=True, error_model="numpy")
 def accelerations(waves, current, points, level, time, out):
-    """Write the acceleration of current and waves [m/s^2] at points (n, 3) that stay in place to `out` (n, 3)."""
+    """Write the acceleration of current and waves [m/s^2] at points (n, 3) to `out` (n, 3).
+
+    The points stay in place.
+    """
     for i in range(points.shape[0]):
         x, y, z = triple(points, i, 0)
         set_rate(current, time, out[i])

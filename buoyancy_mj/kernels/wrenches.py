@@ -1,4 +1,4 @@
-"""Wrenches on bodies from what is wet: buoyancy and the pressure of waves; and what all wrenches do to the joints.
+"""Wrenches on bodies from what is wet, and what all wrenches do to the joints.
 
 A wrench on a body is a row of force [N] and torque [N m] about `xipos`, the centre of mass of the
 body, in the world's axes: what MuJoCo's xfrc_applied holds.
@@ -15,7 +15,9 @@ from buoyancy_mj.kernels.vectors import difference
 
 @njit(cache=True, error_model="numpy")
 def merge(wet, owners, out):
-    """Volume and centroid of the hulls of each owner, rows of `out` (n, 4); the centroid is NaN where all is dry.
+    """Write volume and centroid of the hulls of each owner to rows of `out` (n, 4).
+
+    The centroid is NaN where all is dry.
 
     The columns are those of `clip`, up to the centroid.
     """
@@ -34,7 +36,10 @@ def merge(wet, owners, out):
 
 @njit(cache=True, error_model="numpy")
 def add_buoyancy(wet, owners, specific_weight, xipos, out):
-    """Add to rows of `out` (nbody, 6) the force `specific_weight` [N/m^3] times volume upward at each hull's centroid."""
+    """Add the buoyancy of each hull, at the centroid of what is wet, to rows of `out` (nbody, 6).
+
+    It is `specific_weight` [N/m^3] times volume, upward.
+    """
     for h in range(owners.shape[0]):
         if wet[h, VOLUME] == 0.0:
             continue
@@ -47,7 +52,9 @@ def add_buoyancy(wet, owners, specific_weight, xipos, out):
 
 @njit(cache=True, error_model="numpy")
 def add_wave_pressure(heads, wet, owners, frames, positions, specific_weight, xipos, out):
-    """Add to rows of `out` (nbody, 6) what the pressure has beyond buoyancy: `specific_weight` [N/m^3] times `heads` (h, 6).
+    """Add what the pressure of waves has beyond buoyancy to rows of `out` (nbody, 6).
+
+    The pressure is `specific_weight` [N/m^3] times `heads` (h, 6).
 
     The heads are about the origin of each hull's frame, see `pressure.press_hulls`.
     """

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from buoyancy_mj.errors import MethodError
 from buoyancy_mj.kernels import clip, local, pressure, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
-from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls, Scratch
+from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
+from buoyancy_mj.kernels.scratch import Scratch, new_scratch
 from buoyancy_mj.kernels.sea import PressureModel, Sea
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
@@ -82,13 +83,17 @@ class PackedHulls:
         spans = self.hulls.spans
         leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
         vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
-        most = int(vertices[leaves].max())
-        self.scratch = Scratch(np.empty((5, most)), np.empty((len(self._sea.waves), 7)))
+        self._most = int(vertices[leaves].max())
+        self.scratch = self.new_scratch()
         """Where `submerge` and `press` work."""
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
         """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion of each hull (h, 6), see `methods.Packed.results`."""
+
+    def new_scratch(self) -> Scratch:
+        """Arrays for kernels to work in."""
+        return new_scratch(self._most, len(self._sea.waves))
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -105,7 +110,8 @@ class PackedHulls:
     ) -> NDArray[np.float64]:
         """Submerge all hulls at a time [s]; return `results`, see `methods.Packed`."""
         geoms = Geoms(positions, rotations)
-        clip.submerge_hulls(self.hulls, geoms, self._sea, time, self.scratch, self.results)
+        sea, scratch = self._sea, self.scratch.cut
+        clip.submerge_hulls(self.hulls, geoms, sea.level, sea.waves, time, scratch, self.results)
         return self.results
 
     def press(
@@ -124,7 +130,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             self._sea._replace(pressure=int(model)),
             time,
-            self.scratch.depths[0],
+            self.scratch.pressure,
             rows,
         )
         return rows
@@ -146,7 +152,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             about,
             self._sea.level,
-            self.scratch.depths[0],
+            self.scratch.cut.depths[0],
             rows,
         )
         return rows
@@ -177,7 +183,8 @@ def _hulls(
         t.spans + np.array([f, f, v, v, n]) for t, (f, v, n) in zip(trees, starts, strict=True)
     ]
 
-    # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area itself stays
+    # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area
+    # itself stays
     moments = np.concatenate([t.moments for t in trees])
     moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
     a, b, c = vertices[faces.T]

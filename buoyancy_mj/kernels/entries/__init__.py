@@ -1,4 +1,4 @@
-"""What the engine calls: addresses in; the kernels run on what stands there, generalized forces added where they belong.
+"""C functions that the engine calls: kernels on arrays that stand at addresses.
 
 Imports: the other kernels.
 """

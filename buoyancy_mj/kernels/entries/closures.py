@@ -1,4 +1,4 @@
-"""Kernels as C functions with numbers bound to them: what a C function pointer cannot carry else."""
+"""Kernels as C functions with numbers bound to them, which C function pointers cannot carry."""
 
 import functools
 from collections.abc import Callable
@@ -16,8 +16,8 @@ class Closure:
     """The C function f(...) that calls a kernel as kernel(..., *bound) and returns what it gives.
 
     The annotations of the kernel's arguments and of what it gives are Numba's types; pointers and
-    bound numbers are 64-bit words. The function takes no lock and knows no Python. Its code lives as
-    long as this object.
+    bound numbers are 64-bit words. The function takes no lock and knows no Python. Its code lives
+    as long as this object.
     """
 
     def __init__(self, kernel: Callable[..., Any], *bound: int) -> None:
@@ -46,7 +46,7 @@ class Closure:
 
 @functools.cache
 def compile_kernel(kernel: Callable[..., Any]) -> Any:
-    """A kernel as a C function, with its `address`; compiled if no earlier run has left it compiled."""
+    """A kernel as a C function with its `address`, compiled or read from an earlier run."""
     result, kinds = _signature(kernel)
     return numba.cfunc(result(*kinds), cache=True)(kernel)
 

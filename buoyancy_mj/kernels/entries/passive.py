@@ -1,4 +1,4 @@
-"""The water as an engine written in C calls it: addresses in, generalized forces added where those point.
+"""The water as an engine written in C calls it: by the addresses of mjModel and mjData.
 
 What is known of the water, what a pass leaves and where it works stand in tables, see
 `entries.views`: those of `WaterTable`, `passes.Record` and `Workplace`.
@@ -13,9 +13,9 @@ from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import Words
 from buoyancy_mj.kernels.entries.pointers import call, exchange
 from buoyancy_mj.kernels.entries.views import view, view_engine
-from buoyancy_mj.kernels.hulls import Scratch
 from buoyancy_mj.kernels.multibody import Engine, Identity, Option, downward_gravity
-from buoyancy_mj.kernels.passes import DATA, MODEL, Loads, Record
+from buoyancy_mj.kernels.passes import DATA, MODEL, LoadArrays, Record
+from buoyancy_mj.kernels.scratch import Scratch
 
 
 class Links(NamedTuple):
@@ -28,7 +28,8 @@ class Links(NamedTuple):
     act: int
     """The C function `act`."""
     submerge: int
-    """A function that submerges the hulls in place of `clip.submerge_hulls`, of water, mjData and record."""
+    """A function that submerges the hulls in place of `clip.submerge_hulls`, of water, mjData and
+    record."""
     error: int
     """MuJoCo's mju_error."""
     gravity_text: int
@@ -42,7 +43,7 @@ class Links(NamedTuple):
 class WaterTable(NamedTuple):
     """All that compiled code knows of a water."""
 
-    loads: Loads
+    loads: LoadArrays
     links: Links
     offsets: int
     """Address of the byte offsets of `multibody.PATHS`."""
@@ -62,7 +63,7 @@ class Workplace(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def _evaluate(model, data, water, place, record):
-    """One pass: the loads go into a record, and are added to the engine's passive forces and mass matrix.
+    """Run one pass: fill a record, and add its loads to the engine's forces and mass matrix.
 
     Returns 0, or the address of a text that tells why it cannot.
     """
@@ -95,8 +96,9 @@ def _submerge(model, data, water, place, record):
     if table.links.submerge != 0:
         return call(table.links.submerge, water, data, record, 0)
     engine = view_engine(model, data, table.offsets, Engine)
-    scratch, loads = view(place, Workplace).scratch, table.loads
-    clip.submerge_hulls(loads.hulls, engine.geoms, loads.sea, engine.time, scratch, results.wet)
+    scratch, loads = view(place, Workplace).scratch.cut, table.loads
+    level, waves = loads.sea.level, loads.sea.waves
+    clip.submerge_hulls(loads.hulls, engine.geoms, level, waves, engine.time, scratch, results.wet)
     return 0
 
 
@@ -111,7 +113,11 @@ def _take_workplace(water):
 
 
 def act(model: int64, data: int64, water: int64, record: int64) -> int64:
-    """Act on data at a workplace of the pool, with its record if none is given; 0, or the address of a text."""
+    """Act on data at a free workplace, and leave the loads in a record.
+
+    A record of 0 stands for the one of the workplace. Returns 0, or the address of a text that
+    tells what failed.
+    """
     place = _take_workplace(water)
     room = view(place, Workplace)
     text = _evaluate(model, data, water, place, record if record != 0 else room.record)
@@ -132,7 +138,7 @@ def act_or_fail(model, data, water, record):
 
 
 def callback(model: int64, data: int64, water: int64, previous: int64, copies: int64) -> void:
-    """A callback of the engine: first the one that was there before, then the water, if the model is its own.
+    """A callback of the engine: the previous callback, then the water on its own model.
 
     With `copies` the water acts on all models of the same compilation signature too.
     """

@@ -1,4 +1,4 @@
-"""What an engine plugin is made of: C functions that the engine calls, each with its own small part of the work."""
+"""The C functions of an engine plugin."""
 
 from typing import NamedTuple
 
@@ -27,13 +27,16 @@ class Context(NamedTuple):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _slot(data, instance, context):
-    """Address of the word that the engine keeps for an instance in its data: the address of a record, or 0."""
+    """Address of the word that the engine keeps for an instance: the address of a record, or 0."""
     return word(data + view(context, Context).plugin_data) + 8 * instance
 
 
 @njit(cache=True, error_model="numpy")
 def _resolve(model, data, instance, context):
-    """Let Python find the water of a model and put a record of it into the data; tells the engine what fails."""
+    """Let Python find the water of a model and put a record of it into the data.
+
+    An error goes to the engine.
+    """
     links = view(context, Context)
     text = call(links.resolve, model, data, instance, 0)
     if text != 0:

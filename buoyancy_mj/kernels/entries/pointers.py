@@ -18,7 +18,10 @@ def pointer(typing, address):
 
 @intrinsic
 def call(typing, function, first, second, third, fourth):
-    """Call the C function at an address with four words; it gives one. What takes fewer or gives none does not mind."""
+    """Call the C function at an address with four words; it returns one.
+
+    A function may take fewer words, or return none.
+    """
 
     def code(context, builder, signature, args):
         word = ir.IntType(64)

@@ -1,4 +1,4 @@
-"""Tables of arrays in memory, and views of them: how a NamedTuple of arrays goes to compiled code as one address.
+"""Tables of arrays in memory, and views of them: NamedTuples that go to compiled code by address.
 
 A table has three 64-bit words for each array or number of a NamedTuple, nested ones in their place:
 an array's address, rows and columns, or the bits of the number. See `kernels.arrays` for how a
@@ -22,11 +22,11 @@ _SLOTS = {path: slot for slot, path in enumerate(PATHS)}
 
 
 class Table(Generic[T]):
-    """A NamedTuple of arrays where compiled code finds it; the table lives as long as this object."""
+    """A NamedTuple of arrays where compiled code finds it, as long as this object lives."""
 
     def __init__(self, arrays: T) -> None:
         self.arrays: T = conform(arrays)
-        """The arrays themselves: the same ones where they are contiguous and of the declared dtype."""
+        """The arrays, copied only where they were not as declared."""
         rows = [_describe(value) for value in _flatten(self.arrays)]
         self._words = np.array(rows, np.int64)
         self.address: int = self._words.ctypes.data
