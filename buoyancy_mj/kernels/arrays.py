@@ -15,12 +15,13 @@ from typing import Annotated, Any, NamedTuple, TypeVar, get_args, get_origin, ge
 
 import numpy as np
 from numba import from_dtype, types
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import DTypeLike
 
-Doubles = NDArray[np.float64]
-Words = NDArray[np.int64]
-Int32s = NDArray[np.int32]
-Corners = NDArray[np.uint32]
+# NDArray in full, which from NumPy 2.5 on hides its dtype behind an alias
+Doubles = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
+Words = np.ndarray[tuple[Any, ...], np.dtype[np.int64]]
+Int32s = np.ndarray[tuple[Any, ...], np.dtype[np.int32]]
+Corners = np.ndarray[tuple[Any, ...], np.dtype[np.uint32]]
 """Unsigned, since Numba asks of a signed index whether it counts from the end."""
 T = TypeVar("T", bound=tuple[Any, ...])
 
@@ -59,7 +60,7 @@ def _field(name: str, hint: Any) -> Field | type:
         hint, *extras = get_args(hint)  # type: ignore[assignment]
     shape = next((extra for extra in extras if isinstance(extra, tuple)), ())
     struct = next((extra for extra in extras if isinstance(extra, str)), "")
-    # NDArray[X] is ndarray[shape, dtype[X]]
+    # the dtype of an ndarray[shape, dtype]
     scalar: DTypeLike = get_args(get_args(hint)[1])[0] if shape else hint
     return Field(name, np.dtype(scalar), shape, struct)
 

@@ -1,7 +1,7 @@
 """One pass of the water over the bodies of a model, called by compiled code and by Python alike.
 
-To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArrays`, name it in `Causes`,
-and call the kernel in `add_up`.
+To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArrays`, name it in
+`Causes`, and call the kernel in `add_up`.
 """
 
 from typing import Annotated, NamedTuple
