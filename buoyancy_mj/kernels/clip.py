@@ -174,7 +174,9 @@ def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
                     part, fraction, one, other = cut(a, p, q, s, w0, w1, w2)
                     if wavy:
                         ends = swell.seen_from_above(plane, r, one, other)
-                        more = swell.waterplane_moments(ends, plane, rest, near, flat, ray)
+                        more = swell.waterplane_moments(
+                            ends, plane.height, plane.slope, rest, near, flat, ray
+                        )
                         extra = _sum_four(extra, more)
                 total = _sum(total, (*part, fraction * a, fraction * areas[f, AREA_OF_FACE]))
         i = tree.node_after(spans, i, dry or wet)

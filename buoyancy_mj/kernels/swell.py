@@ -197,16 +197,15 @@ def seen_from_above(plane, r, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(ends, plane, rest, swell, flat, ray):
+def waterplane_moments(ends, height, slope, rest, swell, flat, ray):
     """Integrals of e, x e, y e and (plane + e / 2) e over a triangle of the waterplane.
 
-    Its corners are the middle of the hull and the `ends` of a cut.
-
-    All is seen from above. By Gauss outward, in panels of at most `PANEL` / k, and along the cut;
-    `ray` is scratch.
+    Its corners are the middle of the hull and the `ends` of a cut. The plane has the `height` over
+    the middle, and the `slope`. All is seen from above. By Gauss outward, in panels of at most
+    `PANEL` / k, and along the cut; `ray` is scratch.
     """
     px, py, qx, qy = ends
-    gx, gy = plane.slope
+    gx, gy = slope
     i0 = ix = iy = iz = 0.0
     apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
     slim = apart <= SLIM * (px * px + py * py + qx * qx + qy * qy)
@@ -228,6 +227,6 @@ def waterplane_moments(ends, plane, rest, swell, flat, ray):
                 i0 += e_dA
                 ix += x * e_dA
                 iy += y * e_dA
-                iz += (plane.height + gx * x + gy * y + 0.5 * e) * e_dA
+                iz += (height + gx * x + gy * y + 0.5 * e) * e_dA
     whole = px * qy - py * qx
     return whole * i0, whole * ix, whole * iy, whole * iz
