@@ -84,9 +84,9 @@ def _measure_solid(solid: trimesh.Trimesh, least: float) -> Times:
 
 
 def _bytes(mesh: TriMesh) -> int:
-    """Memory of a mesh and of what is packed of it."""
+    """Memory of a mesh, of what is packed of it, and of where it is cut."""
     packed = exact.PackedHulls(HullSet([mesh]), Water())
-    arrays = [*packed.hulls, *packed.scratch, packed.results, mesh.vertices, mesh.faces]
+    arrays = [*packed.hulls, *packed.scratch.cut, packed.results, mesh.vertices, mesh.faces]
     return sum(values.nbytes for values in arrays)
 
 
