@@ -122,7 +122,9 @@ def _set_wet(out, h, wholes, origin, r, v, mx, my, mz, area, waterplane):
 
 
 @njit(cache=True, error_model="numpy")
-def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
+def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
+    hulls, h, origin, r, level, waves, time, curvature, scratch
+):
     """Volume of a hull, its first moments, waterplane and wetted area, by its tree.
 
     The moments are about the origin of the hull's frame, in the world's axes.
@@ -146,7 +148,24 @@ def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
         under = swell.depth_away(plane, away)
         depth, slope = under, plane.gradient
         if wavy:
-            depth, slope = _add_rest_of_node(depth, slope, away, r, rest, near, flat)
+            # with the rest of the elevation over the middle of the node
+            if rest.smooth:
+                x, y, _ = rotate(r, away[0], away[1], away[2])
+                e, sx, sy = with_gradient(flat, 0, rest.degree, x, y)
+                depth += e
+                slope = (
+                    slope[0] + sx * r[0] + sy * r[3],
+                    slope[1] + sx * r[1] + sy * r[4],
+                    slope[2] + sx * r[2] + sy * r[5],
+                )
+            for w in range(rest.near):
+                crest, steep = near[w, swell.CREST], near[w, swell.SLOPE]
+                k0, k1, k2 = triple(near, w, swell.K)
+                angle = k0 * away[0] + k1 * away[1] + k2 * away[2]
+                sine, cosine = bend(angle, rest.doubled)
+                depth += crest * cosine - steep * sine
+                change = -steep * cosine - crest * (sine + angle)
+                slope = slope[0] + change * k0, slope[1] + change * k1, slope[2] + change * k2
         spread = tree.spread_in_box(half, slope, curvature)
         dry, wet = depth <= -spread, depth >= spread
         if wet and not dry:
@@ -195,34 +214,6 @@ def _walk(hulls, h, origin, r, level, waves, time, curvature, scratch):
 def _sum_four(a, b):
     """Four numbers and four more."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
-
-
-@njit(cache=True, error_model="numpy")
-def _add_rest_of_node(depth, gradient, away, r, rest, near, flat):
-    """Add what the rest of the elevation has to the depth of a node's middle, and to its gradient.
-
-    The middle of the node's box is `away` from that of the hull.
-    """
-    y0, y1, y2 = away
-    h0, h1, h2 = gradient
-    if rest.smooth:
-        x, y, _ = rotate(r, y0, y1, y2)
-        e, sx, sy = with_gradient(flat, 0, rest.degree, x, y)
-        depth += e
-        h0 = h0 + sx * r[0] + sy * r[3]
-        h1 = h1 + sx * r[1] + sy * r[4]
-        h2 = h2 + sx * r[2] + sy * r[5]
-    for w in range(rest.near):
-        crest, slope = near[w, swell.CREST], near[w, swell.SLOPE]
-        k0, k1, k2 = triple(near, w, swell.K)
-        angle = k0 * y0 + k1 * y1 + k2 * y2
-        sine, cosine = bend(angle, rest.doubled)
-        depth += crest * cosine - slope * sine
-        change = -slope * cosine - crest * (sine + angle)
-        h0 += change * k0
-        h1 += change * k1
-        h2 += change * k2
-    return depth, (h0, h1, h2)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
