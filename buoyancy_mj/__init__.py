@@ -1,7 +1,7 @@
 """Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, on its own meshes."""
 
-import dataclasses
-from importlib.metadata import version
+import dataclasses as _dataclasses
+from importlib.metadata import version as _version
 
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.engine.plugin import add_water as add_water
@@ -62,8 +62,8 @@ from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
 
-__version__ = version("buoyancy_mj")
+__version__ = _version("buoyancy_mj")
 
 for _value in tuple(globals().values()):
-    if isinstance(_value, type) and dataclasses.is_dataclass(_value):
+    if isinstance(_value, type) and _dataclasses.is_dataclass(_value):
         _show_fields(_value)

@@ -35,19 +35,26 @@ def show_fields(cls: type) -> None:
 class ReadOnly:
     """A base class of objects whose public attributes are set once, in `__init__`.
 
-    A subclass calls `_seal` with a sentence that says what to do instead, at the end of `__init__`.
+    A subclass calls `_seal` at the end of `__init__`, with a sentence that says what to do instead,
+    and with itself: classes under it may add attributes of their own.
 
     Raises:
         AttributeError: a public attribute is assigned or deleted afterwards.
     """
 
     _instead = ""
+    _sealed: frozenset[str] = frozenset()
+    _by: type | None = None
 
-    def _seal(self, instead: str) -> None:
+    def _seal(self, instead: str, by: type) -> None:
+        """Refuse every public attribute from now on; under `by`, those that there are."""
         self._instead = instead
+        self._sealed = frozenset(vars(self))
+        self._by = by
 
     def __setattr__(self, name: str, value: Any) -> None:
-        if self._instead and not name.startswith("_"):
+        own = type(self) is not self._by and name not in self._sealed
+        if self._instead and not name.startswith("_") and not own:
             self._refuse(name)
         super().__setattr__(name, value)
 

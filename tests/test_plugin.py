@@ -164,7 +164,7 @@ def test_a_second_water_by_callback_is_refused():
 def test_the_water_of_an_unknown_instance_is_refused():
     with pytest.raises(ModelError, match="the model has no water named 'see'; did you mean 'sea'"):
         water_in(with_water(), "see")
-    with pytest.raises(ModelError, match=r"the model has no water named ''; possible: nothing"):
+    with pytest.raises(ModelError, match=r"the model has no water of its own: add_water"):
         water_in(mujoco.MjModel.from_xml_string(PLAIN))
 
 

@@ -14,6 +14,7 @@ from buoyancy_mj import (
     JonswapSea,
     MethodError,
     Panels,
+    RegularWave,
     Scene,
     Sections,
     Selection,
@@ -63,9 +64,73 @@ def test_settings_and_keyword_arguments_make_the_same_water():
     assert Buoyancy(model, Settings(water=water), **options).settings == settings
 
 
-def test_an_option_that_there_is_not_is_refused_by_name():
-    with pytest.raises(TypeError, match="unexpected keyword argument 'geom'"):
-        Buoyancy(vessels.box(), geom="hull*")
+def test_an_option_that_there_is_not_is_refused_with_those_that_there_are():
+    for name in ("drag", "geoms"):
+        with pytest.raises(
+            TypeError, match=f"there is no option '{name}'; possible: added_mass, damping, method"
+        ):
+            Buoyancy(vessels.box(), **{name: "hull*"})
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"damping": Panels()}, r"damping is Panels\(.*; it must be Damping\(viscous="),
+        ({"damping": True}, r"damping is True; it must be Damping\(viscous="),
+        ({"selection": "hull*"}, r"selection is 'hull\*'; it must be Selection\(geoms="),
+        ({"selection": None}, r"selection is None; it must be Selection\(geoms="),
+    ],
+)
+def test_a_value_of_another_kind_is_refused(options, message):
+    with pytest.raises(buoyancy_mj.ModelError, match=message):
+        Settings(**options)
+    with pytest.raises(buoyancy_mj.ModelError, match=message):
+        Buoyancy(vessels.box(), **options)
+    with pytest.raises(buoyancy_mj.ModelError, match=message):
+        dataclasses.replace(read_scene(catalog.scenes()["auv_waves"]), **options)
+
+
+@pytest.mark.parametrize("water", [1025.0, [], "sea", RegularWave(0.1, period=3.0)])
+def test_what_is_no_water_is_refused(water):
+    with pytest.raises(buoyancy_mj.WaterError, match="it must be a Water, as Water"):
+        Buoyancy(vessels.box(), water)
+
+
+def test_a_water_that_is_more_than_its_text_does_not_fit_into_a_model():
+    class Murky(Water):
+        """A water of somebody's own."""
+
+    spec = mujoco.MjSpec.from_file(str(catalog.models()["hourglass"]))
+    with pytest.raises(buoyancy_mj.WaterError, match="cannot be written into a model"):
+        add_water(spec, Murky())
+
+
+def test_the_keys_of_damping_are_listed_with_the_kinds():
+    with pytest.raises(
+        buoyancy_mj.SceneError,
+        match="unknown key 'panels'; possible: coefficient, kind, linear_froude, radiation, "
+        "where kind is one of silhouette, panels, none",
+    ):
+        read_scene(catalog.scenes()["auv_waves"], ["damping.panels=true"])
+
+
+def test_a_model_without_water_says_how_to_get_one():
+    with pytest.raises(
+        buoyancy_mj.ModelError, match=r"no water of its own: add_water\(spec, water"
+    ):
+        water_in(vessels.box())
+
+
+def test_a_class_of_somebodys_own_may_have_attributes_of_its_own():
+    class Counting(Buoyancy):
+        def __init__(self, model):
+            super().__init__(model)
+            self.count = 0
+
+    buoyancy = Counting(vessels.box())
+    buoyancy.count += 1
+    with pytest.raises(AttributeError, match="'water' of a Counting cannot be changed"):
+        buoyancy.water = Water()
 
 
 def test_one_pattern_is_a_list_of_one():

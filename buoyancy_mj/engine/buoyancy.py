@@ -128,7 +128,7 @@ class Buoyancy(ReadOnly):
         self._after = np.zeros(model.nv)
         self._last_data = 0
         self._lock = threading.RLock()
-        self._seal("make another Buoyancy(model, water, ...)")
+        self._seal("make another Buoyancy(model, water, ...)", Buoyancy)
 
     def __call__(self, model: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Add the water's forces to `data.qfrc_passive`, unless the water is `installed`.

@@ -52,7 +52,7 @@ class CompiledWater:
         self._load_model, self._lock = load_model, lock
         self._sizes, self._geoms = (model.nbody, model.nC), model.ngeom
         self._workers = [
-            _Worker(load_model.new_scratch(), self._new_record()) for _ in range(THREADS)
+            _Worker(scratch, self._new_record()) for scratch in load_model.new_scratches(THREADS)
         ]
         self._submerge = wrap_python(self._submerged)
         self._text = encode_text(

@@ -36,6 +36,11 @@ def find_instance(model: mujoco.MjModel, name: str | None) -> int:
     instances = {instance_name(model, i): i for i in plugin_instances(model)}
     if name is None and len(instances) == 1:
         return next(iter(instances.values()))
+    if not instances:
+        raise ModelError(
+            "the model has no water of its own: add_water(spec, water) gives it one before it is "
+            "compiled, and Buoyancy(model, water) puts it into water as it is"
+        )
     if name not in instances:
         raise ModelError(
             f"the model has no water named '{name or ''}'; {choices(name or '', instances)}"

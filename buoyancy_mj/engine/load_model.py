@@ -51,12 +51,13 @@ class LoadModel:
     @functools.cached_property
     def scratch(self) -> Scratch:
         """Arrays to work in, for Python."""
-        return self.new_scratch()
+        return self.new_scratches(1)[0]
 
-    def new_scratch(self) -> Scratch:
-        """Arrays to work in, for one more thread."""
-        packed = self.packed
-        return packed.new_scratch() if isinstance(packed, PackedHulls) else empty(Scratch)
+    def new_scratches(self, count: int) -> list[Scratch]:
+        """Arrays to work in, for so many threads."""
+        if isinstance(self.packed, PackedHulls):
+            return self.packed.new_scratches(count)
+        return [empty(Scratch)] * count
 
     def record(self, bodies: int, inertias: int) -> Record:
         """Room for what one pass leaves.

@@ -1,11 +1,13 @@
 """`Scratch`: arrays to work in, for one thread."""
 
-from typing import Annotated, NamedTuple
+from collections.abc import Mapping
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import local, swell
-from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.arrays import Doubles, Words, leaves
 from buoyancy_mj.kernels.expansions import NODES
 from buoyancy_mj.kernels.quadrature import PLACES
 
@@ -51,22 +53,25 @@ class Scratch(NamedTuple):
     pressure: PressureScratch
 
 
-def new_scratch(vertices: int, waves: int) -> Scratch:
-    """Scratch for leaves of so many vertices, and for so many waves."""
-    cut = CutScratch(
-        depths=np.empty((5, vertices)),
-        swell=np.empty((waves, swell.COLUMNS)),
-        flat=np.empty(local.FLAT),
-        ray=np.empty(local.MOST + 1),
-    )
-    pressure = PressureScratch(
-        depths=np.empty(vertices),
-        corners=np.empty((local.ROOM, vertices)),
-        near=np.empty(local.NEAR + local.WAVE * waves),
-        points=np.empty((local.ROOM + 3, PLACES)),
-        asked=np.empty((local.ROOM, PLACES)),
-        nodes=np.empty(NODES, np.int64),
-        sums=np.empty(6),
-        turned=np.empty(6),
-    )
-    return Scratch(cut, pressure)
+def new_scratches(count: int, vertices: int, waves: int) -> list[Scratch]:
+    """Scratches for leaves of so many vertices, and for so many waves.
+
+    Each array of all of them is one block: of a large block, what nobody writes to costs no memory.
+    """
+    sizes = {"v": vertices, "w": waves, "n": local.NEAR + local.WAVE * waves}
+    cut, pressure = (_new_blocks(kind, count, sizes) for kind in (CutScratch, PressureScratch))
+    return [
+        Scratch(
+            CutScratch(*(block[i] for block in cut)),
+            PressureScratch(*(block[i] for block in pressure)),
+        )
+        for i in range(count)
+    ]
+
+
+def _new_blocks(kind: type, count: int, sizes: Mapping[str, int]) -> list[NDArray[Any]]:
+    """A block for each array of a kind of scratch, `count` times its shape."""
+    return [
+        np.empty((count, *(sizes[n] if isinstance(n, str) else n for n in leaf.shape)), leaf.dtype)
+        for leaf in leaves(kind)
+    ]

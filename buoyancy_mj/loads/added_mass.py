@@ -51,7 +51,7 @@ def resolve_added_mass(
     bodies = sorted(matrices)
     for body in bodies:
         _check_fit(model, body, matrices[body])
-    volumes = [combine_volumes(by_body[body])[0] for body in bodies]
+    volumes = [sum(hull.displaced_volume for hull in by_body[body]) for body in bodies]
     return AddedMass(
         bodies=np.array(bodies, np.int64),
         volumes=np.array(volumes, float),

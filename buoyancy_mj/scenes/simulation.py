@@ -90,7 +90,7 @@ class Simulation(ReadOnly):
         # compile what a fresh installation has not compiled, before the clock runs
         mujoco.mj_forward(self.model, self._frame_data)
         scene.water.elevation(0.0, 0.0, 0.0)
-        self._seal("make another Simulation of a changed scene (dataclasses.replace)")
+        self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
     @property
     def steps(self) -> int:

@@ -79,6 +79,8 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
             "give it there as numerics 'added_mass:BODY'"
         )
     water = settings.water
+    if type(water) is not Water:
+        raise WaterError(f"{water!r} cannot be written into a model; possible is a Water itself")
     waves = cast(tuple[Wave, ...], water.waves)
     texts = {
         "density": format_value(float(water.density)),
@@ -140,9 +142,14 @@ def _redundant_lengths(wave: RegularWave) -> tuple[str, ...]:
 def _format_current(current: Current) -> str:
     """A current as text."""
     for kind, cls in CURRENTS.items():
-        if isinstance(current, cls):
+        if type(current) is cls:
             return format_table(kind, current)
-    return " ".join(format_value(float(speed)) for speed in cast(tuple[float, ...], current))
+    if not isinstance(current, tuple):
+        raise WaterError(
+            f"{current!r} cannot be written into a model; possible are three numbers, "
+            f"{', '.join(CURRENTS)}"
+        )
+    return " ".join(format_value(float(speed)) for speed in current)
 
 
 def _format_method(method: Method) -> str:
@@ -160,6 +167,6 @@ def _format_damping(damping: Damping | None) -> str:
         return "false"
     radiation = f"radiation={format_value(damping.radiation)}"
     for kind, cls in VISCOUS.items():
-        if cls is not None and isinstance(damping.viscous, cls):
+        if cls is not None and type(damping.viscous) is cls:
             return f"{format_table(kind, damping.viscous, defaults=True)} {radiation}"
     return f"none {radiation}"

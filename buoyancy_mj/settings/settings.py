@@ -2,11 +2,11 @@
 
 import dataclasses
 from collections.abc import Mapping
-from typing import TypedDict
+from typing import Any, TypedDict
 
 from numpy.typing import ArrayLike
 
-from buoyancy_mj.errors import MethodError, choices
+from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.loads.damping import Damping, Panels
 from buoyancy_mj.sea.water import Water
@@ -25,6 +25,7 @@ class Settings:
     of the water. A scene has them beside its vehicle, and the plugin keeps them as texts.
 
     Raises:
+        WaterError, ModelError: a water, a damping or a selection of another kind.
         MethodError: an unknown method or pressure; or a pressure, or damping, that needs another
             method.
 
@@ -52,6 +53,20 @@ class Settings:
     """Which geoms displace water, and as what."""
 
     def __post_init__(self) -> None:
+        # kinds of values
+        if not isinstance(self.water, Water):
+            raise WaterError(f"water is {self.water!r}; it must be a Water, as Water(waves=...)")
+        if not isinstance(self.damping, Damping | None):
+            raise ModelError(
+                f"damping is {self.damping!r}; "
+                "it must be Damping(viscous=..., radiation=...) or None"
+            )
+        if not isinstance(self.selection, Selection):
+            raise ModelError(
+                f"selection is {self.selection!r}; "
+                "it must be Selection(geoms=..., hull=..., fill=...)"
+            )
+
         # names
         object.__setattr__(self, "method", parse_method(self.method))
         if self.pressure not in PRESSURES:
@@ -88,10 +103,14 @@ def combine_settings(water: Water | Settings | None, options: Options) -> Settin
     """The settings of a water, fresh and still if None; or settings with options laid over them.
 
     Raises:
-        MethodError: the options do not fit together.
+        TypeError: there is no such option.
+        ModelError, MethodError: see `Settings`.
     """
-    if "method" in options:
-        options["method"] = parse_method(options["method"])
+    known = Options.__annotations__
+    for name in options:
+        if name not in known:
+            raise TypeError(f"there is no option '{name}'; {choices(name, known)}")
+    values: dict[str, Any] = dict(options)
     if isinstance(water, Settings):
-        return dataclasses.replace(water, **options)  # type: ignore[arg-type]
-    return Settings(water=water or Water(), **options)  # type: ignore[arg-type]
+        return dataclasses.replace(water, **values)
+    return Settings(water=Water() if water is None else water, **values)

@@ -1,5 +1,6 @@
 """Settings from tables of plain values, as TOML has them."""
 
+import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
@@ -96,14 +97,23 @@ def damping_from_table(value: Any, where: str) -> Damping | None:
     """Damping from the kind of viscous drag, or a table of `kind`, its options and `radiation`."""
     if isinstance(value, bool):
         return Damping() if value else None
+    if not isinstance(value, str | dict):
+        raise SceneError(
+            f"{where} is {value!r}; needed is true, false, one of {', '.join(VISCOUS)}, or a table"
+        )
     table = {"kind": value} if isinstance(value, str) else dict(table_of(value, where))
     viscous = _find_kind(table.pop("kind", "silhouette"), VISCOUS, where)
     radiation = convert(table.pop("radiation", True), bool, f"{where}: radiation")
-    if viscous is not None:
-        return Damping(viscous=build(viscous, table, where), radiation=radiation)
-    if table:
-        raise SceneError(f"{where}: unknown key '{next(iter(table))}'; possible: kind, radiation")
-    return Damping(viscous=None, radiation=radiation)
+    options = [field.name for field in dataclasses.fields(viscous)] if viscous else []
+    for key in table:
+        if key not in options:
+            raise SceneError(
+                f"{where}: unknown key '{key}'; {choices(key, ('kind', 'radiation', *options))}, "
+                f"where kind is one of {', '.join(VISCOUS)}"
+            )
+    return Damping(
+        viscous=None if viscous is None else build(viscous, table, where), radiation=radiation
+    )
 
 
 def selection_from_table(table: Mapping[str, Any], where: str) -> Selection:

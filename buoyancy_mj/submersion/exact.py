@@ -14,7 +14,7 @@ from buoyancy_mj.kernels import clip, local, pressure, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
-from buoyancy_mj.kernels.scratch import Scratch, new_scratch
+from buoyancy_mj.kernels.scratch import Scratch, new_scratches
 from buoyancy_mj.kernels.sea import PressureModel, Sea
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
@@ -84,16 +84,16 @@ class PackedHulls:
         leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
         vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
         self._most = int(vertices[leaves].max())
-        self.scratch = self.new_scratch()
+        (self.scratch,) = self.new_scratches(1)
         """Where `submerge` and `press` work."""
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
         """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion of each hull (h, 6), see `methods.Packed.results`."""
 
-    def new_scratch(self) -> Scratch:
-        """Arrays for kernels to work in."""
-        return new_scratch(self._most, len(self._sea.waves))
+    def new_scratches(self, count: int) -> list[Scratch]:
+        """Arrays for kernels to work in, for so many threads."""
+        return new_scratches(count, self._most, len(self._sea.waves))
 
     @property
     def counts(self) -> Mapping[str, int]:
