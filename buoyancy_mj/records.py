@@ -43,18 +43,26 @@ class ReadOnly:
     """
 
     _instead = ""
+    """What to do instead of assigning; empty until the object is sealed."""
     _sealed: frozenset[str] = frozenset()
-    _by: type | None = None
+    """Attributes that the object had when it was sealed."""
+    _sealed_by: type | None = None
+    """The class that sealed it."""
 
     def _seal(self, instead: str, by: type) -> None:
-        """Refuse every public attribute from now on; under `by`, those that there are."""
+        """Refuse to assign any public attribute from now on.
+
+        Args:
+            instead: what to do instead, as a clause.
+            by: the class that calls this; classes under it may still add attributes.
+        """
         self._instead = instead
         self._sealed = frozenset(vars(self))
-        self._by = by
+        self._sealed_by = by
 
     def __setattr__(self, name: str, value: Any) -> None:
-        own = type(self) is not self._by and name not in self._sealed
-        if self._instead and not name.startswith("_") and not own:
+        is_added = type(self) is not self._sealed_by and name not in self._sealed
+        if self._instead and not name.startswith("_") and not is_added:
             self._refuse(name)
         super().__setattr__(name, value)
 

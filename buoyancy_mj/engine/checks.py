@@ -10,10 +10,8 @@ import numpy as np
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.kernels.waves import DEPTH
 from buoyancy_mj.sea.water import Water
-
-_DEPTH = 5
-"""Column of `Water.rows` that holds the depth [m] in which a wave runs."""
 
 
 def skips_passive(disableflags: int) -> bool:
@@ -60,7 +58,7 @@ def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> N
     """
     for warning in water.warnings:
         warnings.warn(f"the water has {warning}", BuoyancyWarning, stacklevel=3)
-    shallowest = float(np.min(water.rows[:, _DEPTH], initial=np.inf))
+    shallowest = float(np.min(water.rows[:, DEPTH], initial=np.inf))
     if math.isinf(shallowest):
         return
     for body in {hull.body for hull in hulls}:
