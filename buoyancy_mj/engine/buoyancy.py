@@ -15,6 +15,7 @@ from buoyancy_mj.engine.checks import check_actuation, check_sleep, check_waves
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.load_model import build_load_model
 from buoyancy_mj.errors import EngineError
+from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.kernels import clip, wrenches
@@ -115,11 +116,10 @@ class Buoyancy(ReadOnly):
         # the bodies
         self.bodies = np.unique(self._owners)
         """Indices of the bodies that have hulls."""
-        roots = set(model.body_rootid[self.bodies].tolist())
-        self.floating = np.array(
-            [body for body in range(model.nbody) if model.body_rootid[body] in roots]
-        )
-        """Indices of all bodies of the kinematic trees that have hulls: the vehicles."""
+        groups = group_floating_bodies(model)
+        afloat = [group for group in groups if np.isin(group, self.bodies).any()]
+        self.floating = np.sort(np.concatenate(afloat))
+        """Indices of all bodies that float, and of those that they carry: the vehicles."""
 
         # what a step writes to; threads that share this object take turns
         self._looked = self.record()

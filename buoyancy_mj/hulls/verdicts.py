@@ -4,8 +4,11 @@ import dataclasses
 from collections.abc import Sequence
 
 import mujoco
+import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import geom_kind
 from buoyancy_mj.hulls.patterns import match_geoms, read_words
 from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, Selection
@@ -53,7 +56,10 @@ def judge_geoms(
         ModelError: no geom is left, or a pattern matches none.
     """
     # some geoms can never displace water
-    refusals = {g: reason for g in range(model.ngeom) if (reason := _refuse(model, g, bodies))}
+    moving = find_moving_bodies(model)
+    refusals = {
+        g: reason for g in range(model.ngeom) if (reason := _refuse(model, g, moving, bodies))
+    }
     candidates = [g for g in range(model.ngeom) if g not in refusals]
 
     # the others by the user's words, by the model's, or by their contacts
@@ -80,12 +86,14 @@ def judge_geoms(
     )
 
 
-def _refuse(model: mujoco.MjModel, geom: int, bodies: Sequence[int] | None) -> str:
+def _refuse(
+    model: mujoco.MjModel, geom: int, moving: NDArray[np.bool_], bodies: Sequence[int] | None
+) -> str:
     """Why a geom can never displace water; '' if it can."""
     body = int(model.geom_bodyid[geom])
     if model.geom_type[geom] not in SOLID_TYPES:
         return f"a {geom_kind(model, geom)} bounds no volume"
-    if not model.body_weldid[body]:
+    if not moving[body]:
         return "its body cannot move"
     if bodies is not None and body not in bodies:
         return "its body is not in this water"

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.scenes.trajectory import Poses
 from buoyancy_mj.sea.water import Water
@@ -49,7 +50,7 @@ class Monitor:
         ]
 
         # pairs of geoms of which one is the vehicle's and the other is fixed
-        fixed = model.body_weldid[model.geom_bodyid] == 0
+        fixed = ~find_moving_bodies(model)[model.geom_bodyid]
         vehicle = np.isin(model.geom_bodyid, bodies)
         self._touches = fixed[:, None] & vehicle[None, :]
         self._touches |= self._touches.T
