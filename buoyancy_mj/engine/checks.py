@@ -47,6 +47,59 @@ def check_sleep(model: mujoco.MjModel) -> None:
         )
 
 
+def check_applied(model: mujoco.MjModel, causes: Sequence[str]) -> None:
+    """Refuse water in `xfrc_applied` that a sensor of the model would misread.
+
+    The part of added mass that goes with accelerations stands in the mass matrix, and MuJoCo's
+    recursion for forces between bodies knows only their own inertia.
+
+    Args:
+        model: the model.
+        causes: names of the loads that act.
+
+    Raises:
+        ModelError: added mass acts, and a sensor measures the force or torque between bodies.
+    """
+    kinds = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE
+    sensors = np.flatnonzero(np.isin(model.sensor_type, [int(kind) for kind in kinds]))
+    if "added_mass" in causes and len(sensors):
+        name = model.sensor(sensors[0]).name or f"number {sensors[0]}"
+        raise ModelError(
+            f"the sensor '{name}' would not read the part of the added mass that goes with "
+            "accelerations, which stands in the mass matrix and not in xfrc_applied: leave out "
+            "the sensor, or the added mass (added_mass='none')"
+        )
+
+
+def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    """Refuse data of another model, whose arrays have other sizes or another meaning.
+
+    Copies of a model have its signature, and pickled ones have none.
+
+    Raises:
+        ModelError: the data are of another model.
+    """
+    if data.model is model:
+        return
+    signatures = {model.signature, data.signature} - {0}
+    pairs = {
+        "nq": (model.nq, data.qpos.shape[0]),
+        "nv": (model.nv, data.qvel.shape[0]),
+        "nbody": (model.nbody, data.xpos.shape[0]),
+        "ngeom": (model.ngeom, data.geom_xpos.shape[0]),
+        "nC": (model.nC, data.M.shape[0]),
+    }
+    other = [
+        f"{name} {theirs}, not {ours}" for name, (ours, theirs) in pairs.items() if ours != theirs
+    ]
+    if other or len(signatures) > 1:
+        raise ModelError(
+            f"these data are of another model than this water's "
+            f"({', '.join(other) or 'of the same sizes'}): make them of it, "
+            "mujoco.MjData(buoyancy.model), or make a Buoyancy of their model"
+        )
+
+
 def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
     """Warn of waves that break, and refuse waves in water in which a floating body is aground.
 

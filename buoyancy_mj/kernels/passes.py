@@ -22,7 +22,7 @@ ALIVE, MODEL, DATA, WATER, SIZES, AUGMENTED, IDS = range(7)
 mjData and water; a sum over the sizes of the model's geoms; and whether `Record.inertia` is a mass
 matrix with added mass in it."""
 UNCHANGED, AUGMENT, AUGMENT_DUAL = range(3)
-"""What `apply` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
+"""What `augment` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
 same for a solver of the dual problem, whose constraints must be projected anew too."""
 
 
@@ -144,21 +144,31 @@ def apply(loads, engine, record):
     """Add the loads of `add_up` to the engine's forces, and the added mass to its mass matrix.
 
     Returns:
+        What `augment` returns.
+    """
+    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
+    return augment(loads, engine, record)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def augment(loads, engine, record):
+    """Add the added mass of what is wet to the engine's mass matrix, once in each pass.
+
+    Returns:
         `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
     """
-    done = UNCHANGED
-    if loads.added_mass.bodies.shape[0] > 0 and not _is_augmented(engine.mass_matrix.M, record):
-        mass = engine.mass_matrix.M
-        record.ids[AUGMENTED] = 0
-        if inertia.add_inertia(
-            loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
-        ):
-            record.ids[AUGMENTED] = 1
-            record.inertia[:] = mass
-            dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
-            done = AUGMENT_DUAL if dual else AUGMENT
-    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
-    return done
+    mass = engine.mass_matrix.M
+    if loads.added_mass.bodies.shape[0] == 0 or _is_augmented(mass, record):
+        return UNCHANGED
+    record.ids[AUGMENTED] = 0
+    if not inertia.add_inertia(
+        loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
+    ):
+        return UNCHANGED
+    record.ids[AUGMENTED] = 1
+    record.inertia[:] = mass
+    dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
+    return AUGMENT_DUAL if dual else AUGMENT
 
 
 @njit(cache=True, error_model="numpy", inline="always")

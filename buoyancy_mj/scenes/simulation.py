@@ -1,5 +1,6 @@
 """`Simulation`: run a scene frame by frame."""
 
+import functools
 import math
 import time
 import warnings
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.engine.callbacks import PASSIVE
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
@@ -31,19 +33,22 @@ class Simulation(ReadOnly):
 
     Args:
         scene: what to run.
+        through: where the water's forces enter; by 'qfrc_passive' the water is a part of the model,
+            by 'xfrc_applied' a callback, see `Buoyancy.installed`.
 
     Raises:
         ModelError, MeshError, SceneError: what `assemble` and `Buoyancy` raise; also a vehicle
             whose displacement is absurd for its mass.
+        EngineError: there is no such `through`.
 
     Example:
         `drafts = [frame.draft for frame in Simulation(read_scene(path)).frames()]`
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, *, through: str = PASSIVE) -> None:
         self.scene = scene
         """The scene."""
-        self.model, self.data, bodies = assemble(scene, with_water=True)
+        self.model, self.data, bodies = assemble(scene, with_water=through == PASSIVE)
         # a diverging simulation ends with an error, and is not set back to its start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -57,7 +62,7 @@ class Simulation(ReadOnly):
             self._lend_water = nullcontext
         else:
             self.buoyancy = Buoyancy(self.model, scene)
-            self._lend_water = self.buoyancy.installed
+            self._lend_water = functools.partial(self.buoyancy.installed, through=through)
 
         # the vehicle
         floating = self.buoyancy.floating
@@ -88,7 +93,8 @@ class Simulation(ReadOnly):
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
 
         # compile what a fresh installation has not compiled, before the clock runs
-        mujoco.mj_forward(self.model, self._frame_data)
+        with self._lend_water():
+            mujoco.mj_forward(self.model, self._frame_data)
         scene.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
