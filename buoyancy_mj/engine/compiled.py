@@ -15,9 +15,9 @@ from buoyancy_mj.engine import layout
 from buoyancy_mj.engine.c_functions import address_of, encode_text, wrap_python
 from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.errors import EngineError
-from buoyancy_mj.kernels.entries import passive
+from buoyancy_mj.kernels.entries import loads, passive
 from buoyancy_mj.kernels.entries.closures import compile_kernel
-from buoyancy_mj.kernels.entries.passive import Links, WaterTable, Workplace
+from buoyancy_mj.kernels.entries.tables import Links, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
 from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS, sum_sizes
 from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
@@ -72,6 +72,7 @@ class CompiledWater:
             "add_water(spec) makes water that is measured for each"
         )
         exact = isinstance(load_model.packed, PackedHulls)
+        causes = load_model.causes
         links = Links(
             model=model._address,
             signature=model.signature,
@@ -79,7 +80,10 @@ class CompiledWater:
             measure=address_of(self._measure),
             sizes_text=ctypes.addressof(self._sizes_text),
             act=compile_kernel(passive.act).address,
-            submerge=0 if exact else address_of(self._submerge),
+            submerge=compile_kernel(loads.submerge).address
+            if exact
+            else address_of(self._submerge),
+            augment=compile_kernel(loads.augment).address if "added_mass" in causes else 0,
             error=layout.symbol("mju_error"),
             gravity_text=ctypes.addressof(self._text),
             factor=layout.symbol("mj_factorM"),
@@ -101,7 +105,10 @@ class CompiledWater:
             WaterTable(
                 load_model.arrays,
                 Links._make(np.array([int(n) % 2**64 for n in links], np.uint64).view(np.int64)),
-                self._offsets.ctypes.data,
+                acting=np.array(
+                    [compile_kernel(loads.make_entry(load)).address for load in load_model.acting]
+                ),
+                offsets=self._offsets.ctypes.data,
                 pool=np.array([place.address for place in self._places]),
                 records=np.array([record.address for record in self._last]),
                 datas=np.zeros(THREADS, np.int64),

@@ -7,7 +7,7 @@ from typing import Any
 from buoyancy_mj.engine.c_functions import address_of
 from buoyancy_mj.kernels.entries import passive
 from buoyancy_mj.kernels.entries.closures import Closure
-from buoyancy_mj.kernels.entries.passive import Lease
+from buoyancy_mj.kernels.entries.tables import Lease
 from buoyancy_mj.kernels.entries.views import Table
 
 MOST_FREE = 16

@@ -2,14 +2,14 @@
 
 import dataclasses
 import functools
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import mujoco
 import numpy as np
 
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.kernels import clip
+from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import conform, empty
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.hulls import Hulls
@@ -51,6 +51,18 @@ class LoadModel:
             "added_mass": len(self.arrays.added_mass.bodies) > 0,
         }
         return tuple(cause for cause in CAUSES if acts.get(cause, True))
+
+    @functools.cached_property
+    def acting(self) -> tuple[Callable[..., None], ...]:
+        """Those of `kernels.passes.LOADS` that act."""
+        acts = {
+            passes.add_wave_pressure: self.has_wave_pressure,
+            passes.add_drag: "drag" in self.causes,
+            passes.add_panel_drag: len(self.arrays.damping.panels) > 0,
+            passes.add_radiation: "radiation" in self.causes,
+            passes.add_reaction: "added_mass" in self.causes,
+        }
+        return tuple(load for load in passes.LOADS if acts.get(load, True))
 
     @functools.cached_property
     def has_wave_pressure(self) -> bool:

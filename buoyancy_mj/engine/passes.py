@@ -12,7 +12,7 @@ from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.kernels import passes
 from buoyancy_mj.kernels.arrays import gather
 from buoyancy_mj.kernels.multibody import Engine
-from buoyancy_mj.kernels.passes import DATA, Record
+from buoyancy_mj.kernels.passes import DATA, PassArrays, Record
 
 MOST_RECENT = 64
 """Data whose last passes by Python stay readable."""
@@ -73,7 +73,11 @@ def evaluate(
     """
     record.wet[:] = load_model.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
     engine = _read_engine(model, data)
-    passes.add_up(load_model.arrays, engine, gravity, load_model.scratch, record)
+    arrays = PassArrays(load_model.arrays, engine, gravity, load_model.scratch, record)
+    passes.begin(load_model.arrays, record)
+    for load in load_model.acting:
+        load(arrays)
+    passes.end(engine.time, record)
 
 
 def apply(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, last: Pass) -> None:
@@ -83,19 +87,24 @@ def apply(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, las
     if np.array_equal(passive, last.after):
         passive[:] = last.before
     last.before[:] = passive
-    done = passes.apply(load_model.arrays, _read_engine(model, data), last.record)
+    passes.deliver(load_model.arrays, _read_engine(model, data), last.record)
     last.after[:] = passive
-    _factor(model, data, done)
+    _augment(load_model, model, data, last.record)
 
 
 def augment(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, last: Pass) -> None:
     """Add the added mass of what `evaluate` found to the mass matrix."""
     last.after[:] = np.nan
-    _factor(model, data, passes.augment(load_model.arrays, _read_engine(model, data), last.record))
+    _augment(load_model, model, data, last.record)
 
 
-def _factor(model: mujoco.MjModel, data: mujoco.MjData, done: int) -> None:
-    """Let MuJoCo factor a mass matrix that was changed."""
+def _augment(
+    load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, record: Record
+) -> None:
+    """Add the added mass to the mass matrix, and let MuJoCo factor what was changed."""
+    if "added_mass" not in load_model.causes:
+        return
+    done = passes.augment(load_model.arrays, _read_engine(model, data), record)
     if done != passes.UNCHANGED:
         mujoco.mj_factorM(model, data)
     if done == passes.AUGMENT_DUAL:

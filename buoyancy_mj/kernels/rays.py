@@ -127,7 +127,8 @@ def _hit(vertices, faces, low, step, count, listing, places, heights, signs):
 @njit(cache=True, error_model="numpy")
 def _misenclosed_along(heights, signs, doubled, inverted):
     """Add to lengths enclosed more than once and less than never those of one ray, by its hits."""
-    order = np.argsort(heights)
+    # the kind of sort that trees use, so that no other is compiled
+    order = np.argsort(heights, kind="mergesort")
     winding = 0
     for n in range(heights.shape[0] - 1):
         winding += signs[order[n]]

@@ -5,8 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import int32, int64, njit, void
 
-from buoyancy_mj.kernels.entries.passive import WaterTable, act_or_fail
+from buoyancy_mj.kernels.entries.passive import act_or_fail
 from buoyancy_mj.kernels.entries.pointers import call, set_word, word
+from buoyancy_mj.kernels.entries.tables import WaterTable
 from buoyancy_mj.kernels.entries.views import WORDS, slot, view, view_engine
 from buoyancy_mj.kernels.multibody import Identity, sum_sizes
 from buoyancy_mj.kernels.passes import ALIVE, AUGMENTED, DATA, MODEL, SIZES, WATER, Record
@@ -38,9 +39,9 @@ def _resolve(model, data, instance, context):
     An error goes to the engine.
     """
     links = view(context, Context)
-    text = call(links.resolve, model, data, instance, 0)
+    text = call(links.resolve, (model, data, instance))
     if text != 0:
-        call(links.error, text, 0, 0, 0)
+        call(links.error, (text,))
 
 
 def nstate(model: int64, instance: int32) -> int32:
