@@ -1,0 +1,63 @@
+"""Tells whoever waits that kernels are being compiled, which happens once per installation."""
+
+import sys
+from typing import Any
+
+from numba.core import event
+from numba.core.dispatcher import Dispatcher
+from rich.console import Console
+from rich.progress import Progress
+
+_PACKAGE = __name__.rpartition(".")[0]
+_TEXT = "buoyancy_mj: compiling what is used for the first time, once per installation"
+
+
+class CompilationProgress(event.Listener):  # type: ignore[misc]
+    """A line on the standard error when a kernel is compiled anew, and a bar on a terminal."""
+
+    def __init__(self) -> None:
+        self._depth = 0
+        self._bar: Progress | None = None
+
+    def on_start(self, event: Any) -> None:
+        """A function begins to be compiled."""
+        if not _is_ours(event.data["dispatcher"]):
+            return
+        if self._bar is None:
+            console = Console(stderr=True, highlight=False)
+            # without a thread of its own, and gone when all is compiled
+            self._bar = Progress(
+                console=console, auto_refresh=False, transient=True, disable=not console.is_terminal
+            )
+            self._bar.add_task("compiling", total=_count_kernels())
+            console.print(_TEXT, soft_wrap=True)
+        if self._depth == 0:
+            self._bar.start()
+        self._depth += 1
+
+    def on_end(self, event: Any) -> None:
+        """It is done."""
+        if self._bar is None or not _is_ours(event.data["dispatcher"]):
+            return
+        self._depth -= 1
+        self._bar.advance(self._bar.task_ids[0])
+        self._bar.refresh()
+        if self._depth == 0:
+            self._bar.stop()
+
+
+def _is_ours(dispatcher: Any) -> bool:
+    """Whether a function that Numba compiles is a kernel of this package."""
+    return bool(dispatcher.py_func.__module__.startswith(_PACKAGE))
+
+
+def _count_kernels() -> int:
+    """How many kernels there are, but for those that are built into others."""
+    kernels = {
+        value
+        for name, module in list(sys.modules.items())
+        if name.startswith(_PACKAGE)
+        for value in vars(module).values()
+        if isinstance(value, Dispatcher) and value.targetoptions.get("inline") != "always"
+    }
+    return len(kernels)
