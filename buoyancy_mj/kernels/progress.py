@@ -1,12 +1,13 @@
 """Tells whoever waits that kernels are being compiled, which happens once per installation."""
 
 import sys
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numba.core import event
 from numba.core.dispatcher import Dispatcher
-from rich.console import Console
-from rich.progress import Progress
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 _PACKAGE = __name__.rpartition(".")[0]
 _TEXT = "buoyancy_mj: compiling what is used for the first time, once per installation"
@@ -24,13 +25,8 @@ class CompilationProgress(event.Listener):  # type: ignore[misc]
         if not _is_ours(event.data["dispatcher"]):
             return
         if self._bar is None:
-            console = Console(stderr=True, highlight=False)
-            # without a thread of its own, and gone when all is compiled
-            self._bar = Progress(
-                console=console, auto_refresh=False, transient=True, disable=not console.is_terminal
-            )
-            self._bar.add_task("compiling", total=_count_kernels())
-            console.print(_TEXT, soft_wrap=True)
+            self._bar = _make_bar()
+            self._bar.console.print(_TEXT, soft_wrap=True)
         if self._depth == 0:
             self._bar.start()
         self._depth += 1
@@ -44,6 +40,20 @@ class CompilationProgress(event.Listener):  # type: ignore[misc]
         self._bar.refresh()
         if self._depth == 0:
             self._bar.stop()
+
+
+def _make_bar() -> "Progress":
+    """A bar without a thread of its own, which goes when all is compiled; none but on a terminal."""
+    # only whoever compiles waits for this import
+    from rich.console import Console
+    from rich.progress import Progress
+
+    console = Console(stderr=True, highlight=False)
+    bar = Progress(
+        console=console, auto_refresh=False, transient=True, disable=not console.is_terminal
+    )
+    bar.add_task("compiling", total=_count_kernels())
+    return bar
 
 
 def _is_ours(dispatcher: Any) -> bool:
