@@ -43,11 +43,12 @@ class CompilationProgress(event.Listener):  # type: ignore[misc]
 
 
 def _make_bar() -> "Progress":
-    """A bar without a thread of its own, which goes when all is compiled; none but on a terminal."""
+    """A bar that goes when all is compiled, and that only a terminal shows."""
     # only whoever compiles waits for this import
     from rich.console import Console
     from rich.progress import Progress
 
+    # without a thread of its own
     console = Console(stderr=True, highlight=False)
     bar = Progress(
         console=console, auto_refresh=False, transient=True, disable=not console.is_terminal
