@@ -67,7 +67,7 @@ def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> N
     masses = find_weighing_masses(model)
     for bodies in group_floating_bodies(model):
         of_vessel = [hull for hull in hulls if hull.body in bodies]
-        if not of_vessel or find_tether(model, bodies):
+        if not of_vessel or find_tether(model, bodies) is not None:
             continue
         volume = min(
             float(masses[bodies].sum()) / water.density,

@@ -1,11 +1,24 @@
 """What keeps bodies that float together from floating freely: joints, welds, connects."""
 
+from typing import NamedTuple
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.bodies import Bond, list_bonds
 from buoyancy_mj.hulls.names import body_name
+
+
+class Tether(NamedTuple):
+    """What keeps a body from floating freely."""
+
+    body: str
+    """Name of the body."""
+    how: str
+    """What holds it, as what is said of the body."""
+    mend: str
+    """How to let it float."""
 
 
 def list_roots(model: mujoco.MjModel, bodies: NDArray[np.int64]) -> list[int]:
@@ -19,36 +32,42 @@ def has_free_joint(model: mujoco.MjModel, body: int) -> bool:
     return joint >= 0 and int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_FREE)
 
 
-def find_tether(model: mujoco.MjModel, bodies: NDArray[np.int64]) -> str:
-    """Say what keeps bodies from floating freely, and the mend; '' if nothing does.
+def find_tether(model: mujoco.MjModel, bodies: NDArray[np.int64]) -> Tether | None:
+    """What keeps the bodies of a vessel from floating freely; None if nothing does.
 
     Args:
         model: their model.
-        bodies: indices of the bodies of a vessel.
+        bodies: their indices.
     """
     for bond in list_bonds(model):
         fixed = [body for body in bond.bodies if model.body_treeid[body] < 0]
         held = [body for body in bond.bodies if body in bodies]
         if fixed and held:
             to = "the world" if fixed[0] == 0 else f"'{body_name(model, fixed[0])}'"
-            return (
-                f"{describe_bond(model, bond)} holds body '{body_name(model, held[0])}' to {to}, "
-                "and it is not free to float; set its active='false', or leave it out"
+            return Tether(
+                body=body_name(model, held[0]),
+                how=f"is held to {to} by {_name_bond(model, bond) or 'a ' + _kind(model, bond)}",
+                mend="leave that out, or set its active='false'",
             )
     for root in list_roots(model, bodies):
         if not has_free_joint(model, root):
-            return (
-                f"body '{body_name(model, root)}' hangs on joints and is not free to float; "
-                "give it a <freejoint/>"
-            )
-    return ""
+            return Tether(body_name(model, root), "hangs on joints", "give it a <freejoint/>")
+    return None
 
 
 def describe_bond(model: mujoco.MjModel, bond: Bond) -> str:
     """A weld or a connect by its kind and its name, or by its bodies."""
-    kind = "weld" if model.eq_type[bond.equality] == mujoco.mjtEq.mjEQ_WELD else "connect"
-    name = str(model.equality(bond.equality).name)
-    if name:
-        return f"{kind} '{name}'"
     one, other = (body_name(model, body) for body in bond.bodies)
-    return f"the {kind} of '{one}' and '{other}'"
+    return _name_bond(model, bond) or f"the {_kind(model, bond)} of '{one}' to '{other}'"
+
+
+def _name_bond(model: mujoco.MjModel, bond: Bond) -> str:
+    """Kind and name of a weld or a connect; '' if it has no name."""
+    name = str(model.equality(bond.equality).name)
+    return f"{_kind(model, bond)} '{name}'" if name else ""
+
+
+def _kind(model: mujoco.MjModel, bond: Bond) -> str:
+    """'weld' or 'connect'."""
+    is_weld = model.eq_type[bond.equality] == mujoco.mjtEq.mjEQ_WELD
+    return "weld" if is_weld else "connect"

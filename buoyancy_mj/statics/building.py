@@ -71,7 +71,7 @@ def build_vessel_from_hulls(
     # the model in the pose of its coordinates, and in the shape that its welds demand
     data = mujoco.MjData(model)
     data.qpos[:] = coordinates
-    freedoms = 0 if tether else _join_trees(model, data, bodies, root)
+    freedoms = 0 if tether is not None else _join_trees(model, data, bodies, root)
     mujoco.mj_kinematics(model, data)
 
     frame = _Frame(data.xpos[root].copy(), data.xmat[root].reshape(3, 3).T.copy())

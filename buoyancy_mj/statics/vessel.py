@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError, ModelError, choices
 from buoyancy_mj.hulls.names import body_name
-from buoyancy_mj.hulls.tethers import has_free_joint
+from buoyancy_mj.hulls.tethers import Tether, has_free_joint
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.joined_trees import JoinedTree
@@ -72,8 +72,8 @@ class Vessel:
     """Its kinematic trees."""
     freedoms: int
     """Number of ways in which its connects leave the trees free to move against each other."""
-    tether: str
-    """What keeps it from floating freely, with the mend; '' if nothing does."""
+    tether: Tether | None
+    """What keeps it from floating freely; None if nothing does."""
     water: Water
     """The sea; statics use its density and its still level alone."""
     gravity: float
@@ -181,7 +181,7 @@ class Vessel:
     @property
     def free(self) -> bool:
         """Whether it floats freely: its trees have free joints, and nothing holds it to a place."""
-        return not self.tether
+        return self.tether is None
 
     def check_free(self) -> None:
         """Refuse a vessel that does not float freely.
@@ -189,8 +189,11 @@ class Vessel:
         Raises:
             ModelError: joints, a weld or a connect hold it.
         """
-        if self.tether:
-            raise ModelError(self.tether)
+        if self.tether is not None:
+            raise ModelError(
+                f"body '{self.tether.body}' {self.tether.how} and is not free to float; "
+                f"{self.tether.mend}"
+            )
 
     def check_weight(self) -> None:
         """Refuse a vessel that no water could hold down.
