@@ -118,7 +118,7 @@ def test_a_scene_that_starts_at_rest_does_not_tear_the_welds():
     # welds are soft: they give way by a millimetre, where the hulls swung by 0.29 m
     assert np.ptp([frame.centre_of_mass[2] for frame in frames]) < 3e-3
     assert np.abs(gaps(simulation.model, simulation.data.qpos)).max() < 1e-2
-    assert frames[-1].attitude == pytest.approx([0.0, 0.0, 0.7], abs=5e-3)
+    assert frames[-1].attitude == pytest.approx([0.0, 0.0, 0.7], abs=2e-2)
 
 
 def test_the_root_that_is_named_gives_the_axes_and_its_pose_takes_the_others_along():
