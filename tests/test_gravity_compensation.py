@@ -102,7 +102,7 @@ def test_compensation_set_at_run_time_acts_no_more_than_in_the_engine():
 
 
 @given(st.lists(st.floats(-0.3, 0.9), min_size=3, max_size=3), st.floats(-3.0, 3.0))
-@settings(max_examples=25)
+@settings(max_examples=10)
 def test_at_rest_the_engine_sees_no_acceleration(gravcomp, heel):
     model = trimmed(gravcomp)
     start = [0, 0, 0, *Rotation.from_euler("x", heel).as_quat(scalar_first=True)]

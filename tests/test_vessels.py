@@ -227,6 +227,8 @@ def test_where_welds_demand_another_shape_than_drawn_it_is_told():
     ):
         found = hydrostatics(model)
     assert found.centre_of_gravity == pytest.approx([0.0, 0.0, 0.2 * 30.0 / 110.0], abs=1e-9)
+    (vessel,) = inspect_model(model).vessels
+    assert vessel.notes[0].startswith("welds and connects hold body 'deck' 8.")
 
 
 def test_welds_that_contradict_each_other_are_refused_by_name():

@@ -105,8 +105,9 @@ def inspect_model(
     vessels = []
     for root in _find_roots(model, hulls):
         try:
-            vessel = build_vessel_from_hulls(model, hulls, water, body=root)
-            vessels.append(inspect_vessel(vessel, hulls, _list_refused(vessel, geoms)))
+            vessel, notices_of_vessel = _build_vessel(model, hulls, water, root)
+            refused = _list_refused(vessel, geoms)
+            vessels.append(inspect_vessel(vessel, hulls, refused, notices_of_vessel))
         except BuoyancyError as error:
             problems.append(str(error))
     return Inspection(
@@ -130,6 +131,16 @@ def _build_hulls(
         warnings.simplefilter("always", BuoyancyWarning)
         hulls = build_hulls(model, geoms, forms, fills)
     return hulls, [str(entry.message) for entry in caught]
+
+
+def _build_vessel(
+    model: mujoco.MjModel, hulls: Sequence[Hull], water: Water, root: str
+) -> tuple[Vessel, list[str]]:
+    """The vessel with a root body, and the warnings that came with it."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", BuoyancyWarning)
+        vessel = build_vessel_from_hulls(model, hulls, water, body=root)
+    return vessel, [str(entry.message) for entry in caught]
 
 
 def _find_roots(model: mujoco.MjModel, hulls: Sequence[Hull]) -> list[str]:

@@ -101,7 +101,10 @@ class VesselInspection:
 
 
 def inspect_vessel(
-    vessel: Vessel, hulls: Sequence[Hull], refused: Sequence[str] = ()
+    vessel: Vessel,
+    hulls: Sequence[Hull],
+    refused: Sequence[str] = (),
+    notices: Sequence[str] = (),
 ) -> VesselInspection:
     """Inspect a vessel.
 
@@ -109,8 +112,9 @@ def inspect_vessel(
         vessel: the vessel.
         hulls: all hulls of its model, by body.
         refused: names of its geoms whose meshes are refused, so that its hulls are not whole.
+        notices: what was told when it was built.
     """
-    notes = [] if refused else list_doubts(vessel)
+    notes = [*notices, *([] if refused else list_doubts(vessel))]
     rest: Equilibrium | None = None
     rests: tuple[Equilibrium, ...] = ()
     righting: RightingArm | None = None
