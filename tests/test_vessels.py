@@ -222,13 +222,53 @@ def test_where_welds_demand_another_shape_than_drawn_it_is_told():
     )
     with pytest.warns(
         BuoyancyWarning,
-        match=r"^welds and connects hold body 'deck' 8\.\d+ m from where the model draws it beside "
-        r"'port'; statics take it where they hold it$",
+        match=r"^welds and connects hold body 'deck' 8\.\d+ m and 0 degrees from where the model "
+        r"draws it beside 'port'; statics take it where they hold it$",
     ):
         found = hydrostatics(model)
     assert found.centre_of_gravity == pytest.approx([0.0, 0.0, 0.2 * 30.0 / 110.0], abs=1e-9)
     (vessel,) = inspect_model(model).vessels
     assert vessel.notes[0].startswith("welds and connects hold body 'deck' 8.")
+
+
+def test_a_turn_that_welds_demand_is_told():
+    half = math.sqrt(0.5)
+    model = catamaran(weld("deck", "port") + weld("port", "starboard", f"0 -1 0 {half} 0 0 {half}"))
+    with pytest.warns(
+        BuoyancyWarning,
+        match="^welds and connects hold body 'starboard' 0 m and 90 degrees from where",
+    ):
+        vessel = build_vessel(model)
+    assert np.abs(gaps(model, vessel.qpos)).max() < 1e-9
+
+
+def test_a_loop_within_a_tree_that_is_open_at_its_joint_angles_is_told():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><body name="boat"><freejoint/>
+        <geom type="box" size="1 .5 .2" mass="100"/>
+        <body name="boom"><joint axis="0 0 1"/><geom type="box" size=".5 .1 .1" mass="1"/></body>
+        </body></worldbody>
+        <equality><connect name="sheet" body1="boat" body2="boom" anchor=".5 0 0"/></equality>
+        </mujoco>"""
+    )
+    equilibrium(model)
+    open_by = math.radians(10.0)
+    with pytest.warns(
+        BuoyancyWarning,
+        match="^connect 'sheet' is open by 0.0868 m or rad at these joint angles, and statics hold "
+        "the joints as they are; give angles at which it closes$",
+    ):
+        hydrostatics(model, qpos=[*model.qpos0[:7], open_by])
+
+
+def test_a_model_with_sparse_constraints_has_the_same_shape():
+    model = read(WELDED)
+    model.opt.jacobian = mujoco.mjtJacobian.mjJAC_SPARSE
+    model.body_pos[3] += 0.5
+    model.qpos0[14:17] += 0.5
+    with pytest.warns(BuoyancyWarning, match="hold body 'deck' 0.866 m and 0 degrees"):
+        found = hydrostatics(model)
+    assert found.GMt == pytest.approx(hydrostatics(read(WELDED)).GMt)
 
 
 def test_welds_that_contradict_each_other_are_refused_by_name():

@@ -1,5 +1,6 @@
 """A `Vessel` from a model: its bodies, its mass, its hulls, its sites."""
 
+import math
 import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -15,15 +16,15 @@ from buoyancy_mj.hulls.gravity import find_weighing_masses, read_gravity
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.selection import Selection
-from buoyancy_mj.hulls.tethers import find_tether, has_free_joint, list_roots
+from buoyancy_mj.hulls.tethers import describe_bond, find_tether, has_free_joint, list_roots
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.statics.joined_trees import join_trees, locate_trees
+from buoyancy_mj.statics.joined_trees import find_open_bond, join_trees, locate_trees
 from buoyancy_mj.statics.vessel import Vessel, VesselHull
 
 _NEGLIGIBLE = 1e-9
 """Part of the mass of a vessel, and of its size, below which a weight or its moment is rounding."""
 _WORTH_TELLING = 1e-3
-"""How far a weld must bring a body from where the model draws it to be told of [m]."""
+"""How far a weld must bring a body from where the model draws it to be told of [m, rad]."""
 
 
 def build_vessel(
@@ -190,13 +191,29 @@ def _move_root(vessel: Vessel, pose: NDArray[np.float64]) -> Vessel:
 def _join_trees(
     model: mujoco.MjModel, data: mujoco.MjData, bodies: NDArray[np.int64], root: int
 ) -> int:
-    """Bring data into the shape that welds and connects demand; return its freedoms, see there."""
+    """Bring data into the shape that welds and connects demand, and tell of what that means.
+
+    Returns:
+        The number of ways in which they leave the trees free to move against each other.
+    """
     joining = join_trees(model, data, bodies, root)
-    if joining.moved > _WORTH_TELLING:
+    for move in joining.moves:
+        if move.distance > _WORTH_TELLING or move.angle > _WORTH_TELLING:
+            warnings.warn(
+                f"welds and connects hold body '{body_name(model, move.root)}' "
+                f"{round(move.distance, 6):.3g} m and {round(math.degrees(move.angle), 3):.3g} "
+                f"degrees from where the model draws it beside '{body_name(model, root)}'; "
+                "statics take it where they hold it",
+                BuoyancyWarning,
+                stacklevel=4,
+            )
+
+    found = find_open_bond(model, data, bodies)
+    if found is not None:
+        bond, gap = found
         warnings.warn(
-            f"welds and connects hold body '{body_name(model, joining.moved_tree)}' "
-            f"{joining.moved:.3g} m from where the model draws it beside "
-            f"'{body_name(model, root)}'; statics take it where they hold it",
+            f"{describe_bond(model, bond)} is open by {gap:.3g} m or rad at these joint angles, "
+            "and statics hold the joints as they are; give angles at which it closes",
             BuoyancyWarning,
             stacklevel=4,
         )

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.bodies import Bond, list_bonds
@@ -32,15 +33,24 @@ class JoinedTree(NamedTuple):
     """Rotation of its root to that frame (3, 3)."""
 
 
+class Move(NamedTuple):
+    """How far a tree moved."""
+
+    root: int
+    """Index of its root body."""
+    distance: float
+    """How far its origin went [m]."""
+    angle: float
+    """How far it turned [rad]."""
+
+
 class Joining(NamedTuple):
     """What bringing trees into one shape led to."""
 
     freedoms: int
     """Number of ways in which the trees still move against each other."""
-    moved: float
-    """How far the root of a tree moved at most against the vessel's root [m]."""
-    moved_tree: int
-    """Root of the tree that did."""
+    moves: tuple[Move, ...]
+    """How each tree moved against the vessel's root."""
 
 
 def join_trees(
@@ -61,16 +71,13 @@ def join_trees(
     Raises:
         ModelError: no shape closes all of them.
     """
-    bonds = [
-        bond
-        for bond in list_bonds(model)
-        if np.isin(bond.bodies, bodies).all() and len(set(model.body_treeid[list(bond.bodies)])) > 1
-    ]
+    bonds = _list_bonds_among(model, bodies, across=True)
     roots = [other for other in list_roots(model, bodies) if other != root]
     if not roots:
-        return Joining(0, 0.0, root)
+        return Joining(0, ())
     dofs = np.concatenate([model.body_dofadr[other] + np.arange(6) for other in roots])
-    before = _locate(model, data, root, roots)
+    mujoco.mj_kinematics(model, data)
+    before = locate_trees(model, data, bodies, root)
 
     # close the gaps, by short turns where they are wide
     for _ in range(_MOST_STEPS):
@@ -84,12 +91,39 @@ def join_trees(
         if np.abs(step).max() < 1e-13:
             break
     gaps, jacobian = _linearize(model, data, bonds, dofs)
-    _check_gaps(model, data, bonds, gaps, bodies)
+    worst = float(np.abs(gaps).max(initial=0.0))
+    if worst > _FITS * _measure_size(model, data, bodies):
+        names = " and ".join(dict.fromkeys(describe_bond(model, bond) for bond in bonds))
+        raise ModelError(
+            f"{names} contradict each other or the pose from which they start: {worst:.3g} m or "
+            "rad are left between the bodies; correct relpose or anchor, or draw the bodies where "
+            "they belong"
+        )
 
     # what it took
-    moved = np.linalg.norm(_locate(model, data, root, roots) - before, axis=1)
+    after = locate_trees(model, data, bodies, root)
     freedoms = len(dofs) - int(np.linalg.matrix_rank(jacobian, tol=1e-9))
-    return Joining(freedoms, float(moved.max()), roots[int(moved.argmax())])
+    return Joining(freedoms, tuple(_compare(*pair) for pair in zip(before, after, strict=True)))
+
+
+def find_open_bond(
+    model: mujoco.MjModel, data: mujoco.MjData, bodies: NDArray[np.int64]
+) -> tuple[Bond, float] | None:
+    """A weld or a connect within a kinematic tree that is open at its joint angles, and its gap.
+
+    Statics hold the joints as they are, and so do not close it.
+
+    Args:
+        model: the model.
+        data: its coordinates.
+        bodies: indices of the bodies of the vessel.
+    """
+    for bond in _list_bonds_among(model, bodies, across=False):
+        gaps, _ = _linearize(model, data, [bond], np.empty(0, np.int64))
+        gap = float(np.abs(gaps).max(initial=0.0))
+        if gap > _FITS * _measure_size(model, data, bodies):
+            return bond, gap
+    return None
 
 
 def locate_trees(
@@ -107,12 +141,20 @@ def locate_trees(
     )
 
 
-def _locate(
-    model: mujoco.MjModel, data: mujoco.MjData, root: int, others: Sequence[int]
-) -> NDArray[np.float64]:
-    """Origins of bodies in the frame of the root body (n, 3) [m]."""
-    mujoco.mj_kinematics(model, data)
-    return np.asarray((data.xpos[others] - data.xpos[root]) @ data.xmat[root].reshape(3, 3), float)
+def _compare(before: JoinedTree, after: JoinedTree) -> Move:
+    """How far a tree moved against the vessel's root."""
+    distance = float(np.linalg.norm(after.position - before.position))
+    turn = Rotation.from_matrix(after.rotation @ before.rotation.T)
+    return Move(after.root, distance, float(turn.magnitude()))
+
+
+def _list_bonds_among(
+    model: mujoco.MjModel, bodies: NDArray[np.int64], *, across: bool
+) -> list[Bond]:
+    """Welds and connects among bodies: those between different trees, or those within one."""
+    among = [bond for bond in list_bonds(model) if np.isin(bond.bodies, bodies).all()]
+    trees = [set(model.body_treeid[list(bond.bodies)].tolist()) for bond in among]
+    return [bond for bond, of in zip(among, trees, strict=True) if (len(of) > 1) == across]
 
 
 def _linearize(
@@ -136,22 +178,8 @@ def _linearize(
     return data.efc_pos[rows].copy(), dense[np.ix_(rows, dofs)]
 
 
-def _check_gaps(
-    model: mujoco.MjModel,
-    data: mujoco.MjData,
-    bonds: Sequence[Bond],
-    gaps: NDArray[np.float64],
-    bodies: NDArray[np.int64],
-) -> None:
-    """Refuse welds and connects that no shape closes."""
+def _measure_size(model: mujoco.MjModel, data: mujoco.MjData, bodies: NDArray[np.int64]) -> float:
+    """Distance of the farthest point of the geoms of bodies from the middle of all [m]."""
     geoms = np.flatnonzero(np.isin(model.geom_bodyid, bodies))
-    centre = data.geom_xpos[geoms].mean(axis=0)
-    size = np.linalg.norm(data.geom_xpos[geoms] - centre, axis=1) + model.geom_rbound[geoms]
-    worst = float(np.abs(gaps).max(initial=0.0))
-    if worst > _FITS * float(size.max()):
-        names = " and ".join(dict.fromkeys(describe_bond(model, bond) for bond in bonds))
-        raise ModelError(
-            f"{names} contradict each other or the pose from which they start: {worst:.3g} m or "
-            "rad are left between the bodies; correct relpose or anchor, or draw the bodies where "
-            "they belong"
-        )
+    arms = data.geom_xpos[geoms] - data.geom_xpos[geoms].mean(axis=0)
+    return float((np.linalg.norm(arms, axis=1) + model.geom_rbound[geoms]).max())
