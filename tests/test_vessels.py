@@ -398,6 +398,33 @@ def test_constraints_that_do_not_act_hold_nothing():
     assert equilibrium(model, body="deck").hydrostatics.mass == pytest.approx(30.0)
 
 
+@pytest.mark.parametrize(
+    ("tendon", "told"),
+    [('stiffness="10"', True), ('range="0 4" limited="true"', True), ("", False)],
+)
+def test_what_pulls_at_a_vessel_from_outside_is_told(tendon, told):
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><worldbody><site name="anchor" pos="0 0 -3"/>
+        <body name="buoy"><freejoint/><geom size=".5" mass="100"/><site name="eye"/></body>
+        </worldbody><tendon><spatial name="mooring" {tendon}><site site="anchor"/>
+        <site site="eye"/></spatial></tendon></mujoco>"""
+    )
+    (vessel,) = inspect_model(model).vessels
+    note = "tendon 'mooring' may pull at it in a run; its statics leave that out"
+    assert (note in vessel.notes) == told
+
+
+def test_the_spring_of_a_free_joint_is_told():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><body name="buoy"><joint name="f" type="free" stiffness="3"/>
+        <geom size=".5" mass="100"/></body></worldbody></mujoco>"""
+    )
+    (vessel,) = inspect_model(model).vessels
+    assert "the spring of joint 'f' may pull at it in a run; its statics leave that out" in (
+        vessel.notes
+    )
+
+
 # inspect, ballast, waves
 
 

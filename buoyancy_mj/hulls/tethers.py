@@ -55,6 +55,40 @@ def find_tether(model: mujoco.MjModel, bodies: NDArray[np.int64]) -> Tether | No
     return None
 
 
+def list_springs(model: mujoco.MjModel, bodies: NDArray[np.int64]) -> list[str]:
+    """What pulls at the bodies of a vessel from outside: tendons that are not slack, and springs.
+
+    Args:
+        model: their model.
+        bodies: their indices.
+    """
+    pulls = [
+        f"tendon '{model.tendon(tendon).name}'"
+        for tendon in range(model.ntendon)
+        if len(set(np.isin(_find_tendon_bodies(model, tendon), bodies).tolist())) == 2
+        and (
+            model.tendon_limited[tendon]
+            or model.tendon_stiffness[tendon]
+            or model.tendon_stiffnesspoly[tendon].any()
+        )
+    ]
+    joints = [int(model.body_jntadr[root]) for root in list_roots(model, bodies)]
+    return pulls + [
+        f"the spring of joint '{model.joint(joint).name}'"
+        for joint in joints
+        if model.jnt_stiffness[joint] or model.jnt_stiffnesspoly[joint].any()
+    ]
+
+
+def _find_tendon_bodies(model: mujoco.MjModel, tendon: int) -> NDArray[np.int64]:
+    """Bodies of the sites through which a tendon runs."""
+    path = slice(
+        int(model.tendon_adr[tendon]), int(model.tendon_adr[tendon] + model.tendon_num[tendon])
+    )
+    sites = model.wrap_objid[path][model.wrap_type[path] == mujoco.mjtWrap.mjWRAP_SITE]
+    return np.asarray(model.site_bodyid[sites], np.int64)
+
+
 def describe_bond(model: mujoco.MjModel, bond: Bond) -> str:
     """A weld or a connect by its kind and its name, or by its bodies."""
     one, other = (body_name(model, body) for body in bond.bodies)

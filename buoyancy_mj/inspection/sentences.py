@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from buoyancy_mj.hulls.tethers import list_springs
 from buoyancy_mj.statics.balance import NEUTRAL, find_heave_balance
 from buoyancy_mj.statics.equilibrium import Equilibrium, move_to_rest
 from buoyancy_mj.statics.vessel import PLAUSIBLE, Vessel
@@ -87,6 +88,13 @@ def list_doubts(vessel: Vessel) -> list[str]:
             f"its connects leave it {vessel.freedoms} ways to move within itself; "
             "statics hold it in the shape in which the model draws it"
         )
+    springs = list_springs(vessel.model, vessel.bodies)
+    if springs:
+        doubts.append(
+            f"{' and '.join(springs)} may pull at it in a run; its statics leave that out"
+        )
+
+    # units, and masses that nobody stated
     displacement = vessel.water.density * vessel.volume
     least, most = PLAUSIBLE
     if not least <= displacement / vessel.whole_mass <= most:
