@@ -389,6 +389,14 @@ def test_a_vessel_that_is_held_to_a_place_is_refused_by_name(equality, message):
     assert found.sentence.startswith(f"{how}: free, it would float with ")
 
 
+def test_a_scene_that_should_start_at_rest_and_is_held_is_refused_by_name(tmp_path):
+    path = tmp_path / "moored.xml"
+    moored = '<weld name="dock" body1="deck"/></equality>'
+    path.write_text(WELDED.read_text().replace("</equality>", moored))
+    with pytest.raises(ModelError, match="^body 'deck' is held to the world by weld 'dock' and is"):
+        Simulation(Scene(title="moored", vehicle=path, start=Start(at="equilibrium")))
+
+
 def test_constraints_that_do_not_act_hold_nothing():
     off = '<weld name="dock" body1="deck" active="false"/>'
     assert equilibrium(catamaran(BOTH + off)).hydrostatics.mass == pytest.approx(110.0)
@@ -473,3 +481,41 @@ def test_waves_in_which_the_whole_vessel_is_aground_are_refused():
         check_waves(model, sea, find_hulls(model))
     model.eq_active0[0] = 0
     check_waves(model, sea, find_hulls(model))
+
+
+# against the simulation
+
+
+@pytest.mark.parametrize("kind", ["weld", "connect"])
+def test_it_is_where_the_simulated_vessel_comes_to_rest(kind):
+    """Two hulls, a deck and a load to one side, part of whose weight is compensated."""
+    stiff = 'solref="0.004 1" solimp="0.999 0.9999 0.001 0.5 2"'
+    places = ("0.4 0 0.3", "-0.4 0 0.3", "0 0.1 0.2")
+    anchors = [f'anchor="{place}"' for place in places] if kind == "connect" else [""]
+    equalities = "".join(
+        f'<{kind} body1="{hull}" body2="deck" {anchor} {stiff}/>'
+        for hull in ("port", "starboard")
+        for anchor in anchors
+    )
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>
+        <body name="port" pos="0 0.5 0"><joint type="free" damping="60"/>
+          <geom name="p" type="box" size="1 0.1 0.1" mass="40"/></body>
+        <body name="starboard" pos="0 -0.5 0"><joint type="free" damping="60"/>
+          <geom name="s" type="box" size="1 0.1 0.1" mass="40"/></body>
+        <body name="deck" pos="0 0 0.3"><joint type="free" damping="60"/>
+          <geom name="d" type="box" size="0.5 0.6 0.02" mass="30"/>
+          <body name="load" pos=".2 .25 .3" gravcomp="0.4"><inertial pos="0 0 0" mass="20"
+            diaginertia="0.1 0.1 0.1"/></body></body>
+        </worldbody><equality>{equalities}</equality></mujoco>"""
+    )
+    rest = equilibrium(model)
+    assert math.degrees(rest.hydrostatics.heel) == pytest.approx(-0.936, abs=1e-3)
+    data = mujoco.MjData(model)
+    with Buoyancy(model).installed():
+        while data.time < 15.0:
+            mujoco.mj_step(model, data)
+    for tree in range(3):
+        height, quat = 7 * tree + 2, slice(7 * tree + 3, 7 * tree + 6)
+        assert data.qpos[height] == pytest.approx(rest.qpos[height], abs=1e-4)
+        assert data.qpos[quat] == pytest.approx(rest.qpos[quat], abs=1e-3)

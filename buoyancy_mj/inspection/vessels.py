@@ -41,7 +41,7 @@ class BuoyancyBudget:
     @property
     def reserve(self) -> float:
         """Mass [kg] that it could carry, negative where it is too heavy."""
-        return self.displacement + self.carried - self.mass
+        return self.displacement - (self.mass - self.carried)
 
     @property
     def lift(self) -> float:
