@@ -393,7 +393,7 @@ def test_a_scene_that_should_start_at_rest_and_is_held_is_refused_by_name(tmp_pa
     path = tmp_path / "moored.xml"
     moored = '<weld name="dock" body1="deck"/></equality>'
     path.write_text(WELDED.read_text().replace("</equality>", moored))
-    with pytest.raises(ModelError, match="^body 'deck' is held to the world by weld 'dock' and is"):
+    with pytest.raises(ModelError, match=r"^body 'deck' is held to the world by weld"):
         Simulation(Scene(title="moored", vehicle=path, start=Start(at="equilibrium")))
 
 
