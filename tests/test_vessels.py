@@ -278,9 +278,9 @@ def test_welds_that_contradict_each_other_are_refused_by_name():
     )
     with pytest.raises(
         ModelError,
-        match=r"^weld 'fore' and the weld of 'deck' to 'port' contradict each other or the pose "
-        r"from which they start: 0\.0816 m or rad are left between the bodies; correct relpose or "
-        r"anchor, or draw the bodies where they belong$",
+        match=r"^no place of the bodies fits weld 'fore' and the weld of 'deck' to 'port': "
+        r"0\.0816 m or rad are left between them; correct relpose or anchor, or draw the bodies "
+        r"nearer to where they belong$",
     ):
         hydrostatics(model)
 

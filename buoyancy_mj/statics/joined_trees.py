@@ -18,6 +18,10 @@ _FITS = 1e-3
 MJCF rounds the poses of welds to six digits."""
 _LONGEST_STEP = 0.5
 """Largest turn of a tree in one step of the search for the shape [rad]."""
+_SHORTEST_STEP = 1e-13
+"""Step at which the shape is found [m, rad]."""
+_INDEPENDENT = 1e-9
+"""Slope of a gap, over the steepest, below which no motion of the trees changes it."""
 _MOST_STEPS = 100
 """Steps after which that search ends."""
 
@@ -79,30 +83,20 @@ def join_trees(
     mujoco.mj_kinematics(model, data)
     before = locate_trees(model, data, bodies, root)
 
-    # close the gaps, by short turns where they are wide
-    for _ in range(_MOST_STEPS):
-        gaps, jacobian = _linearize(model, data, bonds, dofs)
-        step = np.linalg.lstsq(jacobian, -gaps, rcond=1e-9)[0]
-        turn = np.abs(step.reshape(-1, 6)[:, 3:]).max()
-        step *= min(1.0, _LONGEST_STEP / turn) if turn > 0.0 else 1.0
-        velocity = np.zeros(model.nv)
-        velocity[dofs] = step
-        mujoco.mj_integratePos(model, data.qpos, velocity, 1.0)
-        if np.abs(step).max() < 1e-13:
-            break
+    # the shape, unless there is none
+    _close_gaps(model, data, bonds, dofs)
     gaps, jacobian = _linearize(model, data, bonds, dofs)
     worst = float(np.abs(gaps).max(initial=0.0))
     if worst > _FITS * _measure_size(model, data, bodies):
         names = " and ".join(dict.fromkeys(describe_bond(model, bond) for bond in bonds))
         raise ModelError(
-            f"{names} contradict each other or the pose from which they start: {worst:.3g} m or "
-            "rad are left between the bodies; correct relpose or anchor, or draw the bodies where "
-            "they belong"
+            f"no place of the bodies fits {names}: {worst:.3g} m or rad are left between them; "
+            "correct relpose or anchor, or draw the bodies nearer to where they belong"
         )
 
     # what it took
     after = locate_trees(model, data, bodies, root)
-    freedoms = len(dofs) - int(np.linalg.matrix_rank(jacobian, tol=1e-9))
+    freedoms = len(dofs) - int(np.linalg.matrix_rank(jacobian, rtol=_INDEPENDENT))
     return Joining(freedoms, tuple(_compare(*pair) for pair in zip(before, after, strict=True)))
 
 
@@ -139,6 +133,23 @@ def locate_trees(
         )
         for other in list_roots(model, bodies)
     )
+
+
+def _close_gaps(
+    model: mujoco.MjModel, data: mujoco.MjData, bonds: Sequence[Bond], dofs: NDArray[np.int64]
+) -> None:
+    """Move free joints, by short turns where gaps are wide, until bonds gain no more by it."""
+    for _ in range(_MOST_STEPS):
+        gaps, jacobian = _linearize(model, data, bonds, dofs)
+        step = np.linalg.lstsq(jacobian, -gaps, rcond=_INDEPENDENT)[0]
+        turn = float(np.abs(step.reshape(-1, 6)[:, 3:]).max())
+        step *= _LONGEST_STEP / max(turn, _LONGEST_STEP)
+
+        velocity = np.zeros(model.nv)
+        velocity[dofs] = step
+        mujoco.mj_integratePos(model, data.qpos, velocity, 1.0)
+        if np.abs(step).max() < _SHORTEST_STEP:
+            return
 
 
 def _compare(before: JoinedTree, after: JoinedTree) -> Move:
