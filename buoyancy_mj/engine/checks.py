@@ -8,8 +8,11 @@ import mujoco
 import numpy as np
 
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.bodies import group_floating_bodies
+from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.tethers import find_tether
 from buoyancy_mj.kernels.waves import DEPTH
 from buoyancy_mj.sea.water import Water
 
@@ -114,19 +117,19 @@ def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> N
     shallowest = float(np.min(water.rows[:, DEPTH], initial=np.inf))
     if math.isinf(shallowest):
         return
-    for body in {hull.body for hull in hulls}:
-        root = int(model.body_rootid[body])
-        if model.body_dofnum[root] != 6:
+    masses = find_weighing_masses(model)
+    for bodies in group_floating_bodies(model):
+        of_vessel = [hull for hull in hulls if hull.body in bodies]
+        if not of_vessel or find_tether(model, bodies) is not None:
             continue
-        of_vehicle = [hull for hull in hulls if model.body_rootid[hull.body] == root]
         volume = min(
-            float(model.body_subtreemass[root]) / water.density,
-            sum(hull.displaced_volume for hull in of_vehicle),
+            float(masses[bodies].sum()) / water.density,
+            sum(hull.displaced_volume for hull in of_vessel),
         )
-        least_draft = volume / (0.5 * sum(hull.mesh.area for hull in of_vehicle))
+        least_draft = volume / (0.5 * sum(hull.mesh.area for hull in of_vessel))
         if least_draft > shallowest:
             raise ModelError(
                 f"the waves run in water {shallowest:g} m deep, and body "
-                f"'{body_name(model, body)}' has a draft of at least {least_draft:.3g} m in any "
-                "attitude; make the waves' depth greater"
+                f"'{body_name(model, of_vessel[0].body)}' has a draft of at least "
+                f"{least_draft:.3g} m in any attitude; make the waves' depth greater"
             )
