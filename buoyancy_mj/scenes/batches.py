@@ -2,24 +2,24 @@
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
 from mujoco import batch
-from numpy.typing import NDArray
 
+from buoyancy_mj.engine.c_functions import find_cause
 from buoyancy_mj.engine.instances import plugin_instances
-from buoyancy_mj.errors import DivergenceError
+from buoyancy_mj.errors import BuoyancyError, DivergenceError
 from buoyancy_mj.scenes.divergence import describe_divergence
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.trajectory import Trajectory
 
 BATCH_MEMORY = 2e8
 """Memory that the trajectories of a batch may take [bytes]."""
+BLOCK_TIME = 0.25
+"""About how long a batch steps before Ctrl-C is asked for [s]."""
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 _SIZES = ("nq", "nv", "na", "nu", "nbody", "ngeom", "nsite", "nsensordata", "nmocap")
-_TIME = int(mujoco.mjtState.mjSTATE_TIME)
 
 
 def run_simulations(
@@ -67,45 +67,78 @@ def run_batch(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
         if getattr(first.data, name).size:
             many.bind(name)[:] = [getattr(simulation.data, name) for simulation in simulations]
 
-    # all steps
-    started = time.perf_counter()
-    recorded = _recorders(first, len(simulations))
+    # all steps, block by block, between which Ctrl-C acts
+    trajectories = _make_trajectories(first, len(simulations), first.steps)
     failures: dict[int, str] = {}
-    try:
-        many.rollout(first.steps, record=list(recorded), out=recorded)
-    except batch.SimulationError:
-        failures = {i: many.error(i) for i in range(len(simulations)) if many.error(i)}
+    started = time.perf_counter()
+    done, size = 0, 1
+    while done < first.steps and len(failures) < len(simulations):
+        size = min(size, first.steps - done)
+        begun = time.perf_counter()
+        running = [i for i in range(len(simulations)) if i not in failures]
+        failures |= _step_block(many, simulations, running, slice(done, done + size), trajectories)
+        done += size
+        size = max(1, int(size * min(2.0, BLOCK_TIME / (time.perf_counter() - begun))))
     wall_time = (time.perf_counter() - started) / len(simulations)
 
     # what came of each
-    reasons = []
     for i, simulation in enumerate(simulations):
-        reason = failures.get(i, "") or _divergence(simulation, float(recorded[_TIME][i, -1, 0]))
-        if not reason:
-            trajectory = Trajectory(*(recorded[name][i] for name in Trajectory._fields))
-            simulation.replay(trajectory, wall_time)
-        reasons.append(reason)
-    return reasons
+        if i not in failures:
+            simulation.replay(Trajectory(*(values[i] for values in trajectories)), wall_time)
+    return [failures.get(i, "") for i in range(len(simulations))]
 
 
-def _recorders(simulation: Simulation, count: int) -> dict[str | int, NDArray[Any]]:
-    """Room for the trajectories of a batch and for their times."""
-    leading = count, simulation.steps
-    recorders: dict[str | int, NDArray[Any]] = {}
+def _make_trajectories(simulation: Simulation, count: int, steps: int) -> Trajectory:
+    """Room for the trajectories of some simulations over some steps."""
+    arrays = []
     for name in Trajectory._fields:
         value = np.asarray(getattr(simulation.data, name))
         kind = np.int32 if value.dtype.kind == "i" else np.float64
-        recorders[name] = np.zeros((*leading, *value.shape), kind)
-    recorders[_TIME] = np.zeros((*leading, 1))
-    return recorders
+        arrays.append(np.zeros((count, steps, *value.shape), kind))
+    return Trajectory(*arrays)
 
 
-def _divergence(simulation: Simulation, end: float) -> str:
-    """The sentence that tells of a run whose time does not end where it should, or ''."""
-    timestep = simulation.model.opt.timestep
-    if abs(end - simulation.steps * timestep) < 0.5 * timestep:
-        return ""
-    return describe_divergence(simulation.scene, end)
+def _step_block(
+    many: batch.Batch,
+    simulations: Sequence[Simulation],
+    running: Sequence[int],
+    steps: slice,
+    trajectories: Trajectory,
+) -> dict[int, str]:
+    """Take some steps with the simulations that still run, and keep what they leave.
+
+    Returns:
+        The reasons of those that fail.
+    """
+    size = steps.stop - steps.start
+    recorded = _make_trajectories(simulations[0], len(running), size)._asdict()
+    failures = {}
+    try:
+        many.rollout(size, record=list(recorded), ids=running, out=recorded)
+    except batch.SimulationError:
+        failures = {i: _find_reason(many.error(i)) for i in running if many.error(i)}
+    for name, values in recorded.items():
+        getattr(trajectories, name)[running, steps] = values
+
+    # one that diverges stops before the others
+    now = many.bind("time")
+    timestep = simulations[0].model.opt.timestep
+    for i in running:
+        if i not in failures and abs(now[i] - steps.stop * timestep) > 0.5 * timestep:
+            failures[i] = describe_divergence(simulations[i].scene, float(now[i]))
+    return failures
+
+
+def _find_reason(told: str) -> str:
+    """The reason of a run that fails, from the message of the engine.
+
+    Raises:
+        BaseException: what a Python function raised that says nothing of the run, as Ctrl-C does.
+    """
+    cause = find_cause(told)
+    if cause is not None and not isinstance(cause, BuoyancyError):
+        raise cause
+    return told if cause is None else str(cause)
 
 
 def _run_alone(simulation: Simulation) -> str:
@@ -113,8 +146,10 @@ def _run_alone(simulation: Simulation) -> str:
     try:
         for _ in simulation.frames():
             pass
-    except (DivergenceError, mujoco.FatalError) as error:
+    except DivergenceError as error:
         return str(error)
+    except mujoco.FatalError as error:
+        return _find_reason(str(error))
     return ""
 
 

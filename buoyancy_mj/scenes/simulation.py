@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.engine.c_functions import find_cause
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
@@ -122,9 +123,13 @@ class Simulation(ReadOnly):
 
         Raises:
             DivergenceError: a position, velocity or acceleration left the finite numbers.
+            KeyboardInterrupt: Ctrl-C, also while Python code submerges.
         """
-        with self._lend_water():
-            mujoco.mj_step(self.model, self.data)
+        try:
+            with self._lend_water():
+                mujoco.mj_step(self.model, self.data)
+        except mujoco.FatalError as error:
+            raise find_cause(error) or error from None
         check_finite(self.scene, self.model, self.data)
 
         # a step leaves the poses of its beginning
@@ -187,8 +192,11 @@ class Simulation(ReadOnly):
         data = self._frame_data
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
         mujoco.mj_setState(self.model, data, self._state, _STATE)
-        with self._lend_water():
-            mujoco.mj_forward(self.model, data)
+        try:
+            with self._lend_water():
+                mujoco.mj_forward(self.model, data)
+        except mujoco.FatalError as error:
+            raise find_cause(error) or error from None
         now = float(data.time)
         loads = self.buoyancy.loads(data)
         self._monitor.add_poses(poses_of(data), now)
