@@ -1,5 +1,8 @@
 """Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, on its own meshes."""
 
+# first of all: it decides where the others come from
+from buoyancy_mj import launch as launch  # isort: split
+
 import dataclasses as _dataclasses
 from importlib.metadata import version as _version
 

@@ -192,7 +192,7 @@ def test_a_place_that_is_no_folder_is_reported(tmp_path):
     simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_still"], SHORT))
     with pytest.raises(
         RecordingError,
-        match=r"cannot write '.*run.partial.rrd': .*; choose another place \(--record\)",
+        match=r"cannot write '.*run.rrd': .*; choose another place \(--record\)",
     ):
         Recording(simulation, tmp_path / "file" / "run.rrd")
 

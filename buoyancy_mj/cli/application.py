@@ -14,7 +14,7 @@ import typer
 from buoyancy_mj import __version__
 from buoyancy_mj.cli.console import err, print_line
 from buoyancy_mj.cli.flags import collect_flags, spread_flags
-from buoyancy_mj.cli.signals import Stop, raise_signals
+from buoyancy_mj.cli.signals import Stop, raise_later, raise_signals
 from buoyancy_mj.engine.c_functions import find_cause
 from buoyancy_mj.errors import BuoyancyError
 
@@ -89,8 +89,8 @@ def _report_errors() -> Iterator[None]:
             # a reader that has gone wants no more, and typer knows that
             if error.errno == errno.EPIPE:
                 raise
-            file = "" if error.filename is None else f" '{error.filename}'"
-            _fail(f"cannot go on with{file or ' a file'}: {error.strerror or error}", error)
+            file = "" if error.filename is None else f"'{error.filename}': "
+            _fail(f"cannot read or write: {file}{error.strerror or error}", error)
         except Stop as stop:
             raise typer.Exit(stop.status) from None
         except KeyboardInterrupt:
@@ -119,5 +119,12 @@ def _print_note(message: Warning | str, *_: Any, **__: Any) -> None:
 
 def _print_mujoco_warning(message: str) -> None:
     """Print a warning of MuJoCo as a note, unless an error will tell of the divergence."""
-    if "Nan, Inf" not in message:
-        _print_note(message)
+    try:
+        if "Nan, Inf" not in message:
+            _print_note(message)
+    except Stop as stop:
+        # MuJoCo would end the process on the spot
+        raise_later(stop)
+    except OSError:
+        # nobody reads the standard error
+        pass

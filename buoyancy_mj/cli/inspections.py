@@ -1,7 +1,6 @@
 """`inspect`: a model before it is put to sea."""
 
 import json
-import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,12 +8,13 @@ import mujoco
 import typer
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import err, out, print_line, viewer_command
+from buoyancy_mj.cli.console import err, out, print_line, quote_path, viewer_command
 from buoyancy_mj.cli.flags import (
     Json,
     ModelArgument,
     SelectionFlags,
     WaterOption,
+    check_file_name,
     check_recording_name,
     parse_still_water,
 )
@@ -55,6 +55,8 @@ def inspect_(
     The report also tells what is wrong with meshes. Exit status 1 says that a mesh is refused.
     """
     check_recording_name(record)
+    check_file_name("--plot", plot)
+    check_file_name("--repair", repair)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     compiled = compile_spec(spec, path)
@@ -72,7 +74,7 @@ def inspect_(
     # files; the standard error tells of them, since the standard output may be JSON
     if plot is not None:
         _draw_plots(inspection, plot)
-        print_line(err, f"plots and report: {shlex.quote(str(plot))}")
+        print_line(err, f"plots and report: {quote_path(plot)}")
     if record is not None:
         from buoyancy_mj.viz.inspection_recording import record_inspection  # needs Rerun
 
@@ -125,4 +127,4 @@ def _write_repaired(
         return
     folder = path.parent / f"{path.stem}_meshes"
     file = write_mjcf(embed_meshes(spec, model, mended, folder), path)
-    print_line(err, f"written: {shlex.quote(str(file))}")
+    print_line(err, f"written: {quote_path(file)}")

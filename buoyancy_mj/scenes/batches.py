@@ -133,8 +133,11 @@ def _find_reason(told: str) -> str:
     """The reason of a run that fails, from the message of the engine.
 
     Raises:
-        BaseException: what a Python function raised that says nothing of the run, as Ctrl-C does.
+        BaseException: what says nothing of the run, as Ctrl-C does.
+        MemoryError: the memory ran out.
     """
+    if "ould not allocate" in told:
+        raise MemoryError(told)
     cause = find_cause(told)
     if cause is not None and not isinstance(cause, BuoyancyError):
         raise cause
