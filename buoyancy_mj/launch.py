@@ -25,7 +25,10 @@ def _prepare() -> None:
 
     # only now, lest it be a file of the working folder
     import signal
+    import warnings
 
+    # what is told during an import, as all is told afterwards
+    warnings.formatwarning = lambda message, *_, **__: f"note: {message}\n"
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # some modules catch whatever is raised while they are imported
         signal.signal(signal.SIGINT, lambda *_: os._exit(130))
