@@ -15,7 +15,7 @@ from buoyancy_mj import __version__
 from buoyancy_mj.cli.console import err, print_line
 from buoyancy_mj.cli.flags import collect_flags, spread_flags
 from buoyancy_mj.cli.signals import Stop, raise_later, raise_signals
-from buoyancy_mj.engine.c_functions import find_cause
+from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import BuoyancyError
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None)
@@ -79,7 +79,7 @@ def _report_errors() -> Iterator[None]:
         # MuJoCo's own warnings would go to a file in the working folder
         mujoco.set_mju_user_warning(_print_mujoco_warning)
         try:
-            with raise_signals(), _raise_causes():
+            with raise_signals(), raise_causes():
                 yield
         except BuoyancyError as error:
             _fail(str(error), error)
@@ -95,15 +95,6 @@ def _report_errors() -> Iterator[None]:
             raise typer.Exit(stop.status) from None
         except KeyboardInterrupt:
             raise typer.Exit(130) from None
-
-
-@contextmanager
-def _raise_causes() -> Iterator[None]:
-    """Raise what the water raised where MuJoCo made an error of its own of it, Ctrl-C among it."""
-    try:
-        yield
-    except mujoco.FatalError as error:
-        raise find_cause(error) or error from None
 
 
 def _fail(message: str, error: Exception) -> NoReturn:

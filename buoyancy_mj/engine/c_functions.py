@@ -1,9 +1,12 @@
 """Python functions as C functions, and the errors that they raise there."""
 
 import collections
+import contextlib
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
+
+import mujoco
 
 _WORD = ctypes.c_int64
 _THREE_WORDS = ctypes.CFUNCTYPE(_WORD, _WORD, _WORD, _WORD)
@@ -59,6 +62,15 @@ def find_cause(told: Exception | str) -> BaseException | None:
     message = str(told)
     causes = (last.error for last in reversed(list(_RAISED)) if last.text[:_KNOWN] in message)
     return next(causes, None)
+
+
+@contextlib.contextmanager
+def raise_causes() -> Iterator[None]:
+    """Raise what Python functions raised, Ctrl-C among it, in place of the engine's errors."""
+    try:
+        yield
+    except mujoco.FatalError as error:
+        raise find_cause(error) or error from None
 
 
 def encode_text(text: str) -> Any:

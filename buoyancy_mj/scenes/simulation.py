@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
-from buoyancy_mj.engine.c_functions import find_cause
+from buoyancy_mj.engine.c_functions import find_cause, raise_causes
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
@@ -85,11 +85,11 @@ class Simulation(ReadOnly):
         # what a run leaves
         self._monitor = Monitor(self.model, self.vehicle, self.hulls, scene.water)
         self._wall_time = 0.0
-        self._frame_data = mujoco.MjData(self.model)
+        with raise_causes():
+            self._frame_data = mujoco.MjData(self.model)
+            # compile what a fresh installation has not compiled, before the clock runs
+            mujoco.mj_forward(self.model, self._frame_data)
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
-
-        # compile what a fresh installation has not compiled, before the clock runs
-        mujoco.mj_forward(self.model, self._frame_data)
         scene.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
