@@ -99,6 +99,20 @@ def replace_file(path: Path) -> Iterator[Path]:
         part.unlink(missing_ok=True)
 
 
+def require_own(path: Path, mark: str) -> None:
+    """Check that a file of a name that nobody gave is not somebody else's.
+
+    Args:
+        path: where this package is to write.
+        mark: a text that the files have which this package writes there.
+
+    Raises:
+        FileExistsError: there is a file without the mark.
+    """
+    if os.path.lexists(path) and not (path.is_file() and mark.encode() in path.read_bytes()):
+        raise FileExistsError(17, "there is a file which was not made here", str(path))
+
+
 def _require_unlocked(path: Path) -> None:
     """Raise `BlockingIOError` if another process has locked a file."""
     try:

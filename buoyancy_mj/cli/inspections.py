@@ -19,6 +19,7 @@ from buoyancy_mj.cli.flags import (
     parse_still_water,
 )
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.inspection import json_report, report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
@@ -26,6 +27,9 @@ from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import compile_spec
 from buoyancy_mj.scenes.vehicles import read_vehicle
+
+_REPORT_MARK = "<!-- written by buoyancy-mj inspect -->"
+"""The last line of a report."""
 
 
 @command("inspect")
@@ -98,12 +102,15 @@ def _draw_plots(inspection: Inspection, folder: Path) -> None:
             "or leave it out"
         ) from error
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        page = folder / "report.md"
+        require_own(page, _REPORT_MARK)
         pictures = [(caption, file.name) for caption, file in draw_charts(inspection, folder)]
-        (folder / "report.md").write_text(report.to_markdown(inspection, pictures))
+        with replace_file(page) as part:
+            part.write_text(f"{report.to_markdown(inspection, pictures)}\n{_REPORT_MARK}\n")
     except OSError as error:
         raise ModelError(
-            f"cannot write into '{folder}': {error.strerror}; choose another folder (--plot)"
+            f"cannot write '{error.filename or folder}': {error.strerror}; choose another folder "
+            "(--plot)"
         ) from error
 
 

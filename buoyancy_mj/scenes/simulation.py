@@ -85,11 +85,12 @@ class Simulation(ReadOnly):
         # what a run leaves
         self._monitor = Monitor(self.model, self.vehicle, self.hulls, scene.water)
         self._wall_time = 0.0
+        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         with raise_causes():
             self._frame_data = mujoco.MjData(self.model)
+
             # compile what a fresh installation has not compiled, before the clock runs
             mujoco.mj_forward(self.model, self._frame_data)
-        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
         scene.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 

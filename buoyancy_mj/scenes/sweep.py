@@ -23,8 +23,8 @@ _SUMMARY = tuple(
     if field.name not in ("scene", "wall_time", "real_time_factor")
 )
 """Fields of the summary that become columns."""
-_MACHINE = ("Error opening file", "ould not allocate")
-"""How MuJoCo words that a file cannot be read, or that the memory runs out."""
+_OF_FILES = ("MuJoCo cannot read", "Error opening file", "ould not allocate")
+"""Words of errors that have to do with files or memory, and not with the values of a run."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -168,7 +168,7 @@ class _UntriedError(Exception):
 
 def _is_of_values(error: BaseException) -> bool:
     """Whether an error may be due to the values of a run, and not to files or memory."""
-    if isinstance(error, (OSError, MemoryError)) or any(words in str(error) for words in _MACHINE):
+    if isinstance(error, (OSError, MemoryError)) or any(words in str(error) for words in _OF_FILES):
         return False
     cause = error.__cause__
     return cause is None or _is_of_values(cause)
