@@ -1,7 +1,7 @@
 """Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, on its own meshes."""
 
 # first of all: it decides where the others come from
-from buoyancy_mj import launch as launch  # isort: split
+from buoyancy_mj import _launch as _launch  # isort: split
 
 import dataclasses as _dataclasses
 import warnings as _warnings

@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, under names that nobody else has.
+"""Files written whole or not at all, under names that nobody else has.
 
 In: a path that somebody asked for.
 Out: a file that may grow beside it, a file that takes its name at the end, and locks.
@@ -6,7 +6,6 @@ May import: nothing of this package.
 """
 
 import contextlib
-import itertools
 import os
 import secrets
 import shutil
@@ -31,7 +30,9 @@ def open_partial(path: Path) -> tuple[int, Path]:
         BlockingIOError: another process is writing the file at `path`; `filename` names where.
         OSError: no file can be made there.
     """
-    for number in itertools.count(1):
+    number = 0
+    while True:
+        number += 1
         tail = "partial" if number == 1 else f"partial-{number}"
         partial = path.with_name(f"{path.stem}.{tail}{path.suffix}")
         try:
@@ -41,7 +42,6 @@ def open_partial(path: Path) -> tuple[int, Path]:
         else:
             lock(descriptor, partial)
             return descriptor, partial
-    raise AssertionError
 
 
 def lock(descriptor: int, path: Path) -> None:

@@ -1,9 +1,4 @@
-"""The first moments of the command line, before anything else is imported.
-
-In: how Python was started.
-Out: no module comes from the working folder, and Ctrl-C leaves no traceback.
-May import: nothing of this package.
-"""
+"""The first moments of the command line, before anything else is imported."""
 
 import os
 import sys
@@ -18,10 +13,15 @@ def _prepare() -> None:
     name of any module that is imported. Ctrl-C during an import would leave a traceback.
     """
     if _is_module():
-        if not sys.flags.safe_path and sys.path[:1] in ([""], [os.getcwd()]):
+        if not sys.flags.safe_path:
+            # where Python has put the working folder
             del sys.path[0]
     elif not os.path.basename("".join(sys.argv[:1])).startswith("buoyancy-mj"):
         return
+
+    # Numba obeys a .numba_config.yaml in the working folder, but not against the environment
+    for name in ("NUMBA_CACHE_DIR", "NUMBA_CACHE_LOCATOR_CLASSES"):
+        os.environ.setdefault(name, "")
 
     # only now, lest it be a file of the working folder
     import signal
