@@ -156,7 +156,7 @@ def test_batches_are_stepped_in_blocks_that_change_nothing(tmp_path, monkeypatch
     assert rollouts == [[1] * 40, [1, 2, 4, 8, 16, 9]]
     assert rows[0] == rows[1]
     assert [row["status"] for row in rows[0]] == ["done", "failed", "done"]
-    assert "diverged at 0.02 s" in rows[0][1]["reason"]
+    assert "diverged at 0.01 s" in rows[0][1]["reason"]
 
 
 def test_a_run_that_diverges_in_its_last_step_has_failed(tmp_path):
