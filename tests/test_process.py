@@ -305,8 +305,7 @@ def executed(folder):
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["--version"],
-        pytest.param(["list"], marks=pytest.mark.slow),
+        pytest.param(["--version"], marks=pytest.mark.slow),
         pytest.param(
             ["run", "hourglass_drop_still", "--duration", "0.05", "--record", "x.rrd"],
             marks=pytest.mark.slow,
@@ -335,6 +334,7 @@ def test_no_module_comes_from_the_working_folder(hostile, arguments):
         assert b"FOOT" in (hostile / "x.rrd").read_bytes()[-32:]
 
 
+@pytest.mark.slow
 def test_a_program_of_the_user_keeps_its_working_folder(tmp_path):
     package = tmp_path / "mine"
     package.mkdir()
@@ -407,6 +407,7 @@ def test_two_installations_keep_their_kernels_apart():
 # what is full -------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a file that is always full")
 def test_a_full_standard_output_is_one_sentence():
     with open("/dev/full", "w") as full:
@@ -489,6 +490,7 @@ def test_partial_files_take_names_that_nobody_has(tmp_path):
     assert (tmp_path / "run.partial-2.rrd").read_text() == "precious"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["report.md", "hourglass_curves.png"])
 def test_plots_replace_their_own_files_only(here, tmp_path, name):
     (tmp_path / name).write_text("precious")
