@@ -5,7 +5,7 @@ import json
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 from rich.progress import TextColumn, TimeRemainingColumn
@@ -21,11 +21,14 @@ from buoyancy_mj.cli.flags import (
     SelectionFlags,
     check_recording_name,
 )
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import RecordingError, SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Frame, Summary
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
+
+if TYPE_CHECKING:
+    from buoyancy_mj.viz.recording import Recording
 
 
 @command()
@@ -112,15 +115,25 @@ def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> P
     recording = Recording(simulation, target, live=live)
     try:
         _run_frames(simulation, recording.add)
+        return recording.close(simulation.summary())
     except BaseException:
         # whatever ends the run, what was recorded stays
         if not recording.closed:
-            partial = recording.close(simulation.summary(), complete=False)
-            if partial is not None:
-                time = simulation.data.time
-                print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
+            _keep_partial(recording)
         raise
-    return recording.close(simulation.summary())
+
+
+def _keep_partial(recording: "Recording") -> None:
+    """Close a recording that broke off, and say where it is."""
+    simulation = recording.simulation
+    try:
+        partial = recording.close(simulation.summary(), complete=False)
+    except RecordingError as error:
+        print_line(err, f"note: {error}", style="yellow")
+    else:
+        if partial is not None:
+            time = simulation.data.time
+            print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
 
 
 def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:

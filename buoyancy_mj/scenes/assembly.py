@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import mujoco
 
-from buoyancy_mj.engine.c_functions import pop_error
+from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.engine.checks import skips_passive
 from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import EngineError
@@ -60,11 +60,9 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
 
     # the model and its mass
     model = compile_spec(spec, catalog.model_path(scene.vehicle, scene.folder))
-    _set_mass(model, scene, bodies)
-    try:
+    with raise_causes():
+        _set_mass(model, scene, bodies)
         data = mujoco.MjData(model)
-    except mujoco.FatalError as error:
-        raise pop_error() or error from None
 
     # the start
     place_vehicle(model, data, scene.start, bodies)

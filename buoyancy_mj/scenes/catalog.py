@@ -89,4 +89,4 @@ def _find(
         )
     raise error(
         f"there is no {kind} '{name}', neither a file nor one that ships; {choices(name, shipped)}"
-    )
+    ) from FileNotFoundError(name)

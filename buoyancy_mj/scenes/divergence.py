@@ -7,7 +7,7 @@ from buoyancy_mj.errors import DivergenceError
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.scenes.scene import Scene
 
-_QUANTITIES = {
+QUANTITIES = {
     mujoco.mjtWarning.mjWARN_BADQPOS: "position",
     mujoco.mjtWarning.mjWARN_BADQVEL: "velocity",
     mujoco.mjtWarning.mjWARN_BADQACC: "acceleration",
@@ -21,7 +21,7 @@ def check_finite(scene: Scene, model: mujoco.MjModel, data: mujoco.MjData) -> No
     Raises:
         DivergenceError: it has; the error names the body and the quantity.
     """
-    for warning, quantity in _QUANTITIES.items():
+    for warning, quantity in QUANTITIES.items():
         counter = data.warning[warning]
         if counter.number:
             body = _body_of(model, warning, counter.lastinfo)

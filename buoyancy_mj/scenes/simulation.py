@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.engine.c_functions import find_cause, raise_causes
 from buoyancy_mj.engine.callbacks import PASSIVE
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
@@ -93,11 +94,12 @@ class Simulation(ReadOnly):
         # what a run leaves
         self._monitor = Monitor(self.model, self.vehicle, self.hulls, scene.water)
         self._wall_time = 0.0
-        self._frame_data = mujoco.MjData(self.model)
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        with raise_causes():
+            self._frame_data = mujoco.MjData(self.model)
 
         # compile what a fresh installation has not compiled, before the clock runs
-        with self._lend_water():
+        with self._lend_water(), raise_causes():
             mujoco.mj_forward(self.model, self._frame_data)
         scene.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
@@ -132,9 +134,13 @@ class Simulation(ReadOnly):
 
         Raises:
             DivergenceError: a position, velocity or acceleration left the finite numbers.
+            KeyboardInterrupt: Ctrl-C, also while Python code submerges.
         """
-        with self._lend_water():
-            mujoco.mj_step(self.model, self.data)
+        try:
+            with self._lend_water():
+                mujoco.mj_step(self.model, self.data)
+        except mujoco.FatalError as error:
+            raise find_cause(error) or error from None
         check_finite(self.scene, self.model, self.data)
 
         # a step leaves the poses of its beginning
@@ -197,8 +203,11 @@ class Simulation(ReadOnly):
         data = self._frame_data
         mujoco.mj_getState(self.model, self.data, self._state, _STATE)
         mujoco.mj_setState(self.model, data, self._state, _STATE)
-        with self._lend_water():
-            mujoco.mj_forward(self.model, data)
+        try:
+            with self._lend_water():
+                mujoco.mj_forward(self.model, data)
+        except mujoco.FatalError as error:
+            raise find_cause(error) or error from None
         now = float(data.time)
         loads = self.buoyancy.loads(data)
         self._monitor.add_poses(poses_of(data), now)

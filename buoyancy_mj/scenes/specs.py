@@ -5,8 +5,8 @@ from pathlib import Path
 
 import mujoco
 
-from buoyancy_mj.engine.c_functions import pop_error
-from buoyancy_mj.errors import BuoyancyError, ModelError
+from buoyancy_mj.engine.c_functions import find_cause
+from buoyancy_mj.errors import ModelError
 
 _PACKAGE_SCHEMES = ("package://", "model://")
 """How URDF names the files of ROS packages, and of Gazebo's models."""
@@ -42,15 +42,15 @@ def compile_spec(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
     Raises:
         ModelError: MuJoCo refuses it. Its own message is kept, with a mend where there is one.
         BuoyancyError: the water in the model refuses it.
+        KeyboardInterrupt: Ctrl-C, while the water is made.
     """
-    pop_error()
     try:
         return spec.compile()
     except ValueError as error:
-        # MuJoCo passes on a refusal of the water as a text; the error itself waits here
-        refusal = pop_error()
-        if isinstance(refusal, BuoyancyError):
-            raise refusal from None
+        # MuJoCo passes on what the water raises as a text; the error itself waits here
+        cause = find_cause(error)
+        if cause is not None:
+            raise cause from None
         message = _one_line(error)
         mend = next((f"; {mend}" for word, mend in _MENDS.items() if word in message), "")
         raise ModelError(f"MuJoCo cannot compile '{path}': {message}{mend}") from error

@@ -28,9 +28,10 @@ FLUSH_EVERY = 0.25
 class Recording:
     """A run, recorded frame by frame.
 
-    The file grows under the name `NAME.partial.rrd` and takes its own at the end, so that a file
-    which was there is replaced as a whole or not at all. A run that breaks off leaves what was
-    recorded until then, readable, under the name that `close` returns.
+    The file grows under the name `NAME.partial.rrd`, or `NAME.partial-2.rrd` and so on where that
+    exists, and takes its own at the end: a file which was there is replaced as a whole or not at
+    all. A run that breaks off leaves what was recorded until then, readable, under the name that
+    `close` returns.
 
     Args:
         simulation: the run, for its model and scene.
@@ -53,16 +54,20 @@ class Recording:
         if path is not None:
             self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
             self._file = RrdFile(path, self._streams[-1])
-        if live:
-            self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
-            try:
+        try:
+            if live:
+                self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
                 _open_viewer(self._streams[-1])
-            except RecordingError:
-                if self._file is not None:
-                    self._file.discard()
-                raise
+            self._begin()
+        except BaseException:
+            # nothing of a recording that never began
+            if not self.closed and self._file is not None:
+                self._file.discard()
+            raise
 
-        # the picture and the plots
+    def _begin(self) -> None:
+        """Draw what stays the same, and be ready for frames."""
+        simulation = self.simulation
         self._times: list[float] = []
         self._lines: dict[plots.Line, list[float]] = {}
         self._size = 2.0 * max(
