@@ -1,7 +1,11 @@
 """`Selection`: which geoms of a model displace water, and as what, as the user chooses it."""
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+import shlex
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from buoyancy_mj.errors import ModelError
 
 CUSTOM_TEXTS: Mapping[str, str] = {
     "geoms": "buoyancy_geoms",
@@ -9,15 +13,23 @@ CUSTOM_TEXTS: Mapping[str, str] = {
     "fill": "buoyancy_fill",
 }
 """MJCF `<custom><text>` by which a vehicle chooses for itself, by the field of `Selection`."""
+_GAPS = " \t\r\n,"
+"""Characters between the words of a text."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Selection:
     """Which geoms of a model displace water, and as what.
 
-    A pattern is a name glob such as 'hull*', or 'group:2'. Each field takes one text or several.
+    A pattern is a name glob such as 'hull*', or 'group:2'. '!PATTERN' takes geoms out again. Each
+    field takes several patterns as a sequence, or as one text, in which blanks or commas stand
+    between them; there quotes keep a pattern with a blank together, as in "'my hull' pod".
+
     None leaves the choice to the model: to its `<custom>` texts 'buoyancy_geoms', 'buoyancy_hull'
     and 'buoyancy_fill', or to the defaults.
+
+    Raises:
+        ModelError: a field is empty, or holds something else than texts.
 
     Example:
         `Selection(geoms=["hull*", "pod"], fill="frame=0.1")`
@@ -35,5 +47,54 @@ class Selection:
         for field in dataclasses.fields(self):
             value = getattr(self, field.name)
             if value is not None:
-                words = (value,) if isinstance(value, str) else tuple(map(str, value))
-                object.__setattr__(self, field.name, words)
+                object.__setattr__(self, field.name, _parse_field(value, field.name))
+
+
+def split_words(text: str, what: str) -> tuple[str, ...]:
+    """The words of a text, between blanks or commas; quotes keep a word with a blank together.
+
+    Args:
+        text: the text.
+        what: how messages call it.
+
+    Raises:
+        ModelError: a quote is opened and not closed.
+    """
+    lexer = shlex.shlex(text, posix=True, punctuation_chars=False)
+    lexer.whitespace = _GAPS
+    lexer.whitespace_split = True
+    lexer.commenters = lexer.escape = ""
+    try:
+        return tuple(lexer)
+    except ValueError:
+        raise ModelError(
+            f"{what} is {text!r}, whose quote is not closed; close it, "
+            "or put a name with a quote in it between quotes of the other kind"
+        ) from None
+
+
+def join_words(words: Iterable[str]) -> str:
+    """A text from which `split_words` makes the same words again."""
+    return " ".join(
+        shlex.quote(word) if not word or set(word) & set(_GAPS + "'\"") else word for word in words
+    )
+
+
+def _parse_field(value: Any, name: str) -> tuple[str, ...]:
+    """The words of a field: those of one text, or each item of a sequence as it is."""
+    if isinstance(value, str):
+        words = split_words(value, name)
+    elif isinstance(value, Iterable) and not isinstance(value, bytes | bytearray | Mapping):
+        words = tuple(value)
+    else:
+        words = (value,)
+    if not all(isinstance(word, str) for word in words):
+        raise ModelError(
+            f"{name} is {value!r}; it must be a pattern, as 'hull*', or a list of them"
+        )
+    if not all(word.strip() for word in words) or not words:
+        raise ModelError(
+            f"an empty choice of {name} displaces nothing; "
+            "give name globs or group:N, or leave it out"
+        )
+    return words

@@ -1,0 +1,144 @@
+"""Scopes: which geoms and bodies of a joined model came from which file, and their names there.
+
+MuJoCo puts a prefix and a suffix around all names of a file that it attaches, those of `<custom>`
+among them. So the name of a text, 'rov1_buoyancy_geoms', tells by what names its file goes:
+'rov1_...'. What has the name of no attached file belongs to the base.
+"""
+
+import dataclasses
+from collections.abc import Iterable, Sequence
+
+import mujoco
+
+from buoyancy_mj.hulls.bodies import find_moving_bodies
+from buoyancy_mj.hulls.names import body_name, unnamed_geom
+from buoyancy_mj.hulls.replicas import find_originals
+
+
+@dataclasses.dataclass(frozen=True)
+class Scope:
+    """What came from one file: everything whose name has a prefix and a suffix."""
+
+    prefix: str = ""
+    """What stands before each name of the file."""
+    suffix: str = ""
+    """What stands behind it."""
+
+    def own_name(self, name: str) -> str | None:
+        """A name as the file itself has it; None if it is none of the file's."""
+        end = len(name) - len(self.suffix)
+        mine = name.startswith(self.prefix) and name.endswith(self.suffix)
+        return name[len(self.prefix) : end] if mine and end > len(self.prefix) else None
+
+
+BASE = Scope()
+"""The file that others were attached to."""
+
+
+def find_scope(name: str, keyword: str) -> Scope | None:
+    """The scope of a name that holds a keyword, by what stands around it; None if it does not."""
+    before, found, after = name.rpartition(keyword)
+    return Scope(before, after) if found else None
+
+
+def find_slash_scopes(model: mujoco.MjModel) -> set[Scope]:
+    """Scopes of prefixes that end in a slash, 'environment/', which names of moving bodies have.
+
+    A slash tells of an attached file even where that file states nothing. An unnamed body goes by
+    its geoms.
+    """
+    names = []
+    for body in find_moving_bodies(model).nonzero()[0]:
+        name = str(model.body(body).name)
+        names += [name] if name else _names_in_body(model, int(body))
+    return {Scope(name[: name.rindex("/") + 1]) for name in names if "/" in name}
+
+
+@dataclasses.dataclass(frozen=True)
+class Belongings:
+    """The scope of each geom of a model, and the names by which its file calls it."""
+
+    scopes: tuple[Scope, ...]
+    """By the index of the geom."""
+    names: tuple[tuple[str, ...], ...]
+    """By the index of the geom. A copy that `<replicate>` made has its original's name too."""
+
+
+def assign_geoms(model: mujoco.MjModel, scopes: Iterable[Scope]) -> Belongings:
+    """Find the scope of each geom, and its names there.
+
+    The longest prefix and suffix win. An unnamed geom belongs to its body's scope; an unnamed body
+    to that of its geoms and joints, or to that of its parent.
+
+    Args:
+        model: any model.
+        scopes: all scopes but the base.
+    """
+    possible = {BASE, *scopes}
+
+    # the bodies, parents first
+    body_names = [str(model.body(body).name) for body in range(model.nbody)]
+    copies = find_originals(body_names)
+    body_scopes = [BASE]
+    for body in range(1, model.nbody):
+        name = body_names[body]
+        signs = [name, *copies[name]] if name else _names_in_body(model, body)[:1]
+        parent = body_scopes[model.body_parentid[body]]
+        body_scopes.append(_find_owner(signs, possible) if signs else parent)
+
+    # the geoms
+    geom_names = [str(model.geom(geom).name) for geom in range(model.ngeom)]
+    copies = find_originals(geom_names)
+    geom_scopes = [
+        _find_owner([name, *copies[name]], possible) if name else body_scopes[body]
+        for name, body in zip(geom_names, model.geom_bodyid, strict=True)
+    ]
+
+    # their names there
+    own_bodies = _find_own_names(body_names, body_scopes)
+    own_geoms = _find_own_names(geom_names, geom_scopes)
+    for geom, body in enumerate(model.geom_bodyid):
+        if not geom_names[geom]:
+            # the file knows an unnamed body by another index, unless it is the base
+            fallback = body_name(model, body) if body_scopes[body] == BASE else "body ?"
+            bodies = own_bodies[body] or [body_names[body] or fallback]
+            own_geoms[geom] = [f"{own}/{unnamed_geom(model, geom)}" for own in bodies]
+    return Belongings(tuple(geom_scopes), tuple(map(tuple, own_geoms)))
+
+
+def _find_owner(names: Sequence[str], scopes: Iterable[Scope]) -> Scope:
+    """The scope with the longest prefix and suffix that one of the names has."""
+    owners = [scope for scope in scopes if any(scope.own_name(name) for name in names)]
+    return max(owners, key=lambda scope: (len(scope.prefix) + len(scope.suffix), scope.prefix))
+
+
+def _names_in_body(model: mujoco.MjModel, body: int) -> list[str]:
+    """The names of the geoms and joints of a body."""
+    kinds = (
+        (model.geom, model.body_geomadr[body], model.body_geomnum[body]),
+        (model.joint, model.body_jntadr[body], model.body_jntnum[body]),
+    )
+    names = [str(get(first + i).name) for get, first, count in kinds for i in range(count)]
+    return [name for name in names if name]
+
+
+def _find_own_names(names: Sequence[str], scopes: Sequence[Scope]) -> list[list[str]]:
+    """What the scope of each name calls it, and the originals of which it may be a copy."""
+    copies = find_originals(names)
+    stripped = [
+        [own for full in (name, *copies.get(name, ())) if (own := scope.own_name(full))]
+        for name, scope in zip(names, scopes, strict=True)
+    ]
+    inside = {
+        scope: find_originals(
+            own
+            for group, other in zip(stripped, scopes, strict=True)
+            if other == scope
+            for own in group
+        )
+        for scope in set(scopes)
+    }
+    return [
+        list(dict.fromkeys(n for own in group for n in (own, *inside[scope][own])))
+        for group, scope in zip(stripped, scopes, strict=True)
+    ]
