@@ -37,9 +37,8 @@ def read_all_texts(model: mujoco.MjModel) -> dict[str, str]:
     for i in range(model.ntext):
         start = model.text_adr[i]
         data = bytes(model.text_data[start : start + model.text_size[i]])
-        texts[_name(model, mujoco.mjtObj.mjOBJ_TEXT, i)] = data.split(b"\0")[0].decode(
-            errors="replace"
-        )
+        name = _name(model, mujoco.mjtObj.mjOBJ_TEXT, i)
+        texts[name] = data.split(b"\0")[0].decode(errors="replace")
     return texts
 
 
@@ -90,7 +89,7 @@ def read_numerics(
     `hulls.words.check_words` judges those that are given for none of `bodies`; here they are left
     out. What is given for a body by its own name wins over what is given for it as a copy.
     """
-    numbers = {}
+    numbers: dict[int, NDArray[np.float64]] = {}
     for numeric in sorted(read_body_numerics(model), key=lambda one: -len(one.bodies)):
         if numeric.quantity == quantity:
             numbers |= {body: numeric.numbers for body in numeric.bodies if body in bodies}

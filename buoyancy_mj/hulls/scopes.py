@@ -30,6 +30,15 @@ class Scope:
         mine = name.startswith(self.prefix) and name.endswith(self.suffix)
         return name[len(self.prefix) : end] if mine and end > len(self.prefix) else None
 
+    @property
+    def separates(self) -> bool:
+        """Whether its prefix ends, or its suffix begins, with a sign such as '_', '-' or '/'.
+
+        Otherwise other names may have them by chance.
+        """
+        signs = self.prefix[-1:] + self.suffix[:1]
+        return bool(signs) and not signs.isalnum()
+
 
 BASE = Scope()
 """The file that others were attached to."""

@@ -1,6 +1,7 @@
 """`Selection`: which geoms of a model displace water, and as what, as the user chooses it."""
 
 import dataclasses
+import glob
 import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -48,6 +49,26 @@ class Selection:
             value = getattr(self, field.name)
             if value is not None:
                 object.__setattr__(self, field.name, _parse_field(value, field.name))
+
+
+def rename_patterns(selection: Selection, prefix: str, suffix: str) -> Selection:
+    """A selection for a model in which all names got a prefix and a suffix."""
+    before, after = glob.escape(prefix), glob.escape(suffix)
+
+    def rename(word: str) -> str:
+        sign = "!" if word.startswith("!") else ""
+        pattern = word.removeprefix("!")
+        return word if pattern.startswith("group:") else f"{sign}{before}{pattern}{after}"
+
+    def rename_assignment(word: str) -> str:
+        pattern, equals, value = word.rpartition("=")
+        return f"{rename(pattern)}={value}" if equals else word
+
+    return Selection(
+        geoms=None if selection.geoms is None else [rename(word) for word in selection.geoms],
+        hull=None if selection.hull is None else list(map(rename_assignment, selection.hull)),
+        fill=None if selection.fill is None else list(map(rename_assignment, selection.fill)),
+    )
 
 
 def split_words(text: str, what: str) -> tuple[str, ...]:

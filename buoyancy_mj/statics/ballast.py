@@ -238,5 +238,5 @@ def _add_item(spec: mujoco.MjSpec, root: mujoco.MjsBody, item: BallastItem) -> N
         mass=0.0,
     )
     for text in spec.texts:
-        if text.name.rsplit("/", 1)[-1] == CUSTOM_TEXTS["geoms"]:
+        if text.name == CUSTOM_TEXTS["geoms"]:
             text.data = f"{text.data} {item.label}"
