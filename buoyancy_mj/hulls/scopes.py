@@ -28,7 +28,7 @@ class Scope:
         """A name as the file itself has it; None if it is none of the file's."""
         end = len(name) - len(self.suffix)
         mine = name.startswith(self.prefix) and name.endswith(self.suffix)
-        return name[len(self.prefix) : end] if mine and end > len(self.prefix) else None
+        return name[len(self.prefix) : end] if mine and end >= len(self.prefix) else None
 
     @property
     def separates(self) -> bool:
@@ -117,7 +117,7 @@ def assign_geoms(model: mujoco.MjModel, scopes: Iterable[Scope]) -> Belongings:
 
 def _find_owner(names: Sequence[str], scopes: Iterable[Scope]) -> Scope:
     """The scope with the longest prefix and suffix that one of the names has."""
-    owners = [scope for scope in scopes if any(scope.own_name(name) for name in names)]
+    owners = [s for s in scopes if any(s.own_name(name) is not None for name in names)]
     return max(owners, key=lambda scope: (len(scope.prefix) + len(scope.suffix), scope.prefix))
 
 
@@ -135,7 +135,7 @@ def _find_own_names(names: Sequence[str], scopes: Sequence[Scope]) -> list[list[
     """What the scope of each name calls it, and the originals of which it may be a copy."""
     copies = find_originals(names)
     stripped = [
-        [own for full in (name, *copies.get(name, ())) if (own := scope.own_name(full))]
+        [own for full in (name, *copies.get(name, ())) if (own := scope.own_name(full)) is not None]
         for name, scope in zip(names, scopes, strict=True)
     ]
     inside = {
@@ -148,6 +148,6 @@ def _find_own_names(names: Sequence[str], scopes: Sequence[Scope]) -> list[list[
         for scope in set(scopes)
     }
     return [
-        list(dict.fromkeys(n for own in group for n in (own, *inside[scope][own])))
+        list(dict.fromkeys(n for own in group for n in (own, *inside[scope].get(own, ()))))
         for group, scope in zip(stripped, scopes, strict=True)
     ]

@@ -96,9 +96,13 @@ def split_words(text: str, what: str) -> tuple[str, ...]:
 
 def join_words(words: Iterable[str]) -> str:
     """A text from which `split_words` makes the same words again."""
-    return " ".join(
-        shlex.quote(word) if not word or set(word) & set(_GAPS + "'\"") else word for word in words
-    )
+    return " ".join(_quote(word) if set(word) & set(_GAPS + "'\"") else word for word in words)
+
+
+def _quote(word: str) -> str:
+    """A word between quotes; those inside it stand between quotes of the other kind."""
+    inside = word.replace("'", "'\"'\"'")
+    return f"'{inside}'"
 
 
 def _parse_field(value: Any, name: str) -> tuple[str, ...]:
@@ -111,7 +115,7 @@ def _parse_field(value: Any, name: str) -> tuple[str, ...]:
         words = (value,)
     if not all(isinstance(word, str) for word in words):
         raise ModelError(
-            f"{name} is {value!r}; it must be a pattern, as 'hull*', or a list of them"
+            f"{name} is {value!r}; it must be a pattern, as 'hull*', or a list of patterns"
         )
     if not all(word.strip() for word in words) or not words:
         raise ModelError(

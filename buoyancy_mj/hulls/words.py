@@ -2,9 +2,10 @@
 
 import dataclasses
 import difflib
+import fnmatch
 import functools
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import mujoco
@@ -17,6 +18,7 @@ from buoyancy_mj.hulls.custom import (
     read_tuple_names,
     split_quantity,
 )
+from buoyancy_mj.hulls.names import geom_name
 from buoyancy_mj.hulls.scopes import (
     BASE,
     Belongings,
@@ -71,7 +73,7 @@ class FileWords:
         """Which geoms belong to which file.
 
         Scopes are those that state anything, and prefixes that end in a slash. Where a text names
-        such a prefix itself, the slash is a part of the names in its file.
+        geoms behind such a slash itself, the slash is a part of the names in its file.
         """
         scopes = {choice.scope for choice in self.choices}
         for name in read_all_numerics(self.model):
@@ -79,13 +81,35 @@ class FileWords:
                 scope = find_scope(name, f"{quantity[0]}:")
                 assert scope is not None
                 scopes.add(Scope(scope.prefix))
-        named = {choice.scope.prefix + p for choice in self.choices for p in choice.patterns}
-        slashes = {
-            scope
-            for scope in find_slash_scopes(self.model)
-            if not any(name.startswith(scope.prefix) for name in named)
-        }
-        return assign_geoms(self.model, (scopes | slashes) - {BASE})
+        slashes = find_slash_scopes(self.model) - scopes
+        belongings = assign_geoms(self.model, (scopes | slashes) - {BASE})
+        named = {scope for scope in slashes if self._names(scope, belongings)}
+        if not named:
+            return belongings
+        return assign_geoms(self.model, (scopes | slashes) - named - {BASE})
+
+    def _names(self, slash: Scope, belongings: Belongings) -> bool:
+        """Whether a text has a pattern for what stands behind a slash.
+
+        It begins with what stands before the slash, or it matches geoms there and none in the file
+        of the text.
+        """
+        behind = [g for g, owner in enumerate(belongings.scopes) if owner == slash]
+        for choice in self.choices:
+            own = [g for g, owner in enumerate(belongings.scopes) if owner == choice.scope]
+            names = [name for g in own for name in belongings.names[g]]
+            others = [choice.scope.own_name(geom_name(self.model, g)) or "" for g in behind]
+            for pattern in choice.patterns:
+                if f"{choice.scope.prefix}{pattern}".startswith(slash.prefix):
+                    return True
+                if _finds(pattern, others) and not _finds(pattern, names):
+                    return True
+        return False
+
+
+def _finds(pattern: str, names: Iterable[str]) -> bool:
+    """Whether a glob matches one of some names."""
+    return any(fnmatch.fnmatchcase(name, pattern) for name in names)
 
 
 def read_file_words(model: mujoco.MjModel) -> FileWords:
@@ -122,7 +146,7 @@ def check_custom_names(model: mujoco.MjModel) -> None:
         needed = _kind_of_keyword(name)
         if needed and kind != needed:
             raise ModelError(
-                f"'{name}' is a <{kind}>, and is read only as a <{needed}>; make it one"
+                f"'{name}' is a <{kind}> and is read only as a <{needed}>; make it one"
             )
         if not needed and (near := _find_near_keyword(name)):
             raise ModelError(

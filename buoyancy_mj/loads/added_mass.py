@@ -32,7 +32,8 @@ def check_source(source: object) -> None:
         return
     if not isinstance(source, Mapping):
         raise ModelError(
-            f"added mass is {source!r}; {choices(str(source), SOURCES)}, or matrices by body"
+            f"added mass is {' '.join(repr(source).split())}; "
+            f"{choices(str(source), SOURCES)}, or matrices by body"
         )
     for name in source:
         if not isinstance(name, str):
