@@ -343,6 +343,11 @@ def test_a_word_with_an_exclamation_mark_leaves_geoms_out_without_a_notice():
     # the last word would choose the pod again; what is left out stays out
     assert list(volumes(model)) == ["box"]
     assert list(volumes(model, selection=Selection(geoms="* !m* !p*"))) == ["box", "arm"]
+    # without other words, it is taken out of the default
+    assert list(volumes(with_custom(text("buoyancy_geoms", "!pod"), arm))) == ["box", "mast", "arm"]
+    assert list(volumes(model, selection=Selection(geoms="!mast"))) == ["box", "pod", "arm"]
+    with pytest.raises(ModelError, match="the words that choose geoms leave out all; name one of"):
+        volumes(model, selection=Selection(geoms="* !*"))
     with pytest.raises(ModelError, match="no moving geom matches 'keel' of 'buoyancy_geoms'"):
         volumes(with_custom(text("buoyancy_geoms", "box pod !keel")))
 
@@ -374,6 +379,7 @@ POSSIBLE = (
     "possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, buoyancy_hull, "
     "linear_damping:BODY, quadratic_damping:BODY, radiation_damping:BODY"
 )
+PART = "if only a part of its file was attached, delete the word from the spec before that"
 WRONG = [
     (
         numeric("added_masss:hull"),
@@ -447,11 +453,11 @@ WRONG = [
     ),
     (
         text("my_buoyancy_geoms", "box"),
-        "no moving geom matches 'box' of 'my_buoyancy_geoms'; possible: nothing",
+        f"no moving geom matches 'box' of 'my_buoyancy_geoms'; possible: nothing; {PART}",
     ),
     (
         text("buoyancy_hull_1", "convex"),
-        "no moving geom matches '*' of 'buoyancy_hull_1'; possible: nothing",
+        f"no moving geom matches '*' of 'buoyancy_hull_1'; possible: nothing; {PART}",
     ),
     (
         text("buoyancy_geoms", "&quot;box"),
@@ -482,14 +488,14 @@ def test_so_it_is_under_a_prefix(prefix):
 
     assert refused("added_mass:rov", "added_mass:row") == (
         f"added mass is given for body '{prefix}row', which the model does not have; "
-        f"did you mean '{prefix}rov'? possible: {prefix}rov"
+        f"did you mean '{prefix}rov'? possible: {prefix}rov; {PART}"
     )
     assert refused('data="float*"', 'data="flaot*"') == (
         f"no moving geom matches 'flaot*' of '{prefix}buoyancy_geoms'; "
-        "did you mean 'float_a'? possible: float_a, frame, group:0"
+        f"did you mean 'float_a'? possible: float_a, frame, group:0; {PART}"
     )
     assert refused("buoyancy_fill", "buoyancy_fills") == (
-        f"no moving geom matches 'float*' of '{prefix}buoyancy_fills'; possible: nothing"
+        f"no moving geom matches 'float*' of '{prefix}buoyancy_fills'; possible: nothing; {PART}"
     )
     assert refused("added_mass:", "aded_mass:").startswith(
         f"the numeric '{prefix}aded_mass:rov' is none that water reads; did you mean 'added_mass:B"

@@ -9,6 +9,7 @@ import mujoco
 
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.names import geom_name
+from buoyancy_mj.hulls.scopes import BASE, Scope, explain_missing
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.hulls.words import Choice, FileWords, read_file_words
 
@@ -28,6 +29,8 @@ class Pool:
     """Why some of them, and of others, cannot be chosen."""
     source: str = ""
     """The name of the text that holds the patterns; '' for the user's."""
+    scope: Scope = BASE
+    """What came from the file of that text."""
 
     def matches(self, geom: int, pattern: str) -> bool:
         """Whether a name of a geom matches a glob, or its group is N of 'group:N'."""
@@ -56,6 +59,7 @@ class Pool:
         )
         raise ModelError(
             f"no moving geom matches '{pattern}'{of}{but}; {choices(pattern, possible)}"
+            f"{'' if matches else explain_missing(self.scope)}"
         )
 
 
@@ -70,7 +74,7 @@ def pool_of_file(
     """The geoms of the file that states a choice, by the names that the file has for them."""
     belongings = words.belongings
     names = {g: belongings.names[g] for g in words.find_geoms(choice.scope)}
-    return Pool(model, names, refusals, choice.name)
+    return Pool(model, names, refusals, choice.name, choice.scope)
 
 
 def parse_shapes(

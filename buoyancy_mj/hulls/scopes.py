@@ -50,6 +50,13 @@ def find_scope(name: str, keyword: str) -> Scope | None:
     return Scope(before, after) if found else None
 
 
+def explain_missing(scope: Scope) -> str:
+    """The tail of a message on a word that finds nothing: what helps in an attached file."""
+    if scope == BASE:
+        return ""
+    return "; if only a part of its file was attached, delete the word from the spec before that"
+
+
 def find_slash_scopes(model: mujoco.MjModel) -> set[Scope]:
     """Scopes of prefixes that end in a slash, 'environment/', which names of moving bodies have.
 

@@ -9,6 +9,7 @@ from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.custom import BodyNumeric, read_body_numerics
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.patterns import pool_of_file, split_assignment
+from buoyancy_mj.hulls.scopes import BASE, Scope, explain_missing, find_scope
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.hulls.words import FileWords
 
@@ -34,6 +35,7 @@ def check_statements(
             without them.
     """
     # shapes and fills
+    geoms = set(geoms)
     idle = {g: "it displaces nothing" for g in range(model.ngeom) if g not in geoms}
     for field in ("hull", "fill"):
         for choice in words.of_field(field) if getattr(selection, field) is None else ():
@@ -43,37 +45,34 @@ def check_statements(
 
     # numbers of bodies
     bodies = {int(model.body_weldid[model.geom_bodyid[g]]) for g in geoms}
-    given: dict[tuple[str, int], str] = {}
+    given: dict[tuple[str, str], str] = {}
     for numeric in read_body_numerics(model):
         _check_bodies(model, numeric, bodies)
-        if len(numeric.bodies) == 1:
-            key = numeric.quantity, numeric.bodies[0]
-            if key in given:
-                raise ModelError(
-                    f"'{given[key]}' and '{numeric.name}' both give the "
-                    f"{numeric.quantity.replace('_', ' ')} of body '{numeric.body_name}'; "
-                    "remove one of them"
-                )
-            given[key] = numeric.name
+        other = given.setdefault((numeric.quantity, numeric.body_name), numeric.name)
+        if other != numeric.name:
+            raise ModelError(
+                f"'{other}' and '{numeric.name}' both give the "
+                f"{numeric.quantity.replace('_', ' ')} of body '{numeric.body_name}'; "
+                "remove one of them"
+            )
 
 
 def _check_bodies(model: mujoco.MjModel, numeric: BodyNumeric, bodies: Collection[int]) -> None:
     """Refuse a numeric whose body is none of those that displace water."""
-    possible = [body_name(model, body) for body in bodies]
+    wrong = [body for body in numeric.bodies if body not in bodies]
+    if numeric.bodies and not wrong:
+        return
     what = f"{numeric.quantity.replace('_', ' ')} is given for body '{numeric.body_name}'"
-    if not numeric.bodies:
+    possible = choices(numeric.body_name, [body_name(model, body) for body in bodies])
+    if not wrong:
+        scope = find_scope(numeric.name, f"{numeric.quantity}:") or BASE
+        hint = explain_missing(Scope(scope.prefix))
+        raise ModelError(f"{what}, which the model does not have; {possible}{hint}")
+    if not find_moving_bodies(model)[wrong[0]]:
+        raise ModelError(f"{what}, which cannot move; {possible}")
+    carrier = int(model.body_weldid[wrong[0]])
+    if carrier in bodies:
         raise ModelError(
-            f"{what}, which the model does not have; {choices(numeric.body_name, possible)}"
+            f"{what}, which moves with body '{body_name(model, carrier)}'; give it for that one"
         )
-    moving = find_moving_bodies(model)
-    for body in numeric.bodies:
-        carrier = int(model.body_weldid[body])
-        if body in bodies:
-            continue
-        if not moving[body]:
-            raise ModelError(f"{what}, which cannot move; {choices('', possible)}")
-        if carrier in bodies:
-            raise ModelError(
-                f"{what}, which moves with body '{body_name(model, carrier)}'; give it for that one"
-            )
-        raise ModelError(f"{what}, which has no hull of its own; {choices('', possible)}")
+    raise ModelError(f"{what}, which has no hull of its own; {possible}")

@@ -2,7 +2,7 @@
 
 import dataclasses
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -77,7 +77,8 @@ def judge_geoms(
     candidates = [g for g in range(model.ngeom) if g not in refusals]
     if selection.geoms is not None:
         pool = pool_of_model(model, refusals | outside)
-        reasons = _choose_by_words(pool, selection.geoms, "chosen")
+        default = _choose_by_contacts(model, candidates)
+        reasons = _choose_by_words(pool, selection.geoms, "chosen", default)
         check_statements(model, words, selection, candidates, refusals)
     else:
         reasons = _choose_by_files(model, words, candidates, refusals)
@@ -87,16 +88,30 @@ def judge_geoms(
     # in this water
     reasons = {g: reason for g, reason in reasons.items() if g not in outside}
     if not reasons:
-        of = "of the bodies in this water" if outside else "of this model"
-        raise ModelError(
-            f"no geom {of} displaces water: it has no mesh, box, sphere, ellipsoid, "
-            "capsule or cylinder on a body that can move; "
-            "give the vehicle such a geom, and its body a joint"
-        )
+        raise _nothing_displaces(candidates, outside)
     left_out = _explain_left_out(words, selection, candidates)
     return tuple(
         Verdict(g, g in reasons, reasons.get(g) or (refusals | outside | left_out)[g])
         for g in range(model.ngeom)
+    )
+
+
+def _nothing_displaces(candidates: Collection[int], outside: Collection[int]) -> ModelError:
+    """The error of a water without a geom."""
+    if not candidates:
+        return ModelError(
+            "no geom of this model displaces water: it has no mesh, box, sphere, ellipsoid, "
+            "capsule or cylinder on a body that can move; "
+            "give the vehicle such a geom, and its body a joint"
+        )
+    if len(outside) == len(candidates):
+        return ModelError(
+            "no geom of the bodies in this water displaces it: none of them can move and has a "
+            "mesh, box, sphere, ellipsoid, capsule or cylinder; let other bodies join this water"
+        )
+    return ModelError(
+        "no geom of this model displaces water: the words that choose geoms leave out all; "
+        "name one of them"
     )
 
 
@@ -107,12 +122,17 @@ def _refuse(model: mujoco.MjModel, geom: int, moving: NDArray[np.bool_]) -> str:
     return "" if moving[model.geom_bodyid[geom]] else "its body cannot move"
 
 
-def _choose_by_words(pool: Pool, words: Iterable[str], by: str) -> dict[int, str]:
+def _choose_by_words(
+    pool: Pool, words: Collection[str], by: str, default: Mapping[int, str]
+) -> dict[int, str]:
     """The geoms that words match, and why; the first word that matches a geom is its reason.
 
-    A word '!PATTERN' takes geoms out again, whatever its place.
+    A word '!PATTERN' takes geoms out again, whatever its place; out of the default choice if there
+    are no other words.
     """
     chosen: dict[int, str] = {}
+    if all(word.startswith("!") for word in words):
+        chosen = {g: reason for g, reason in default.items() if g in pool.names}
     left_out: set[int] = set()
     for word in words:
         if word.startswith("!"):
@@ -129,12 +149,12 @@ def _choose_by_files(
     refusals: Mapping[int, str],
 ) -> dict[int, str]:
     """The geoms that each file chooses of its own, or contacts where it is silent; and why."""
-    reasons = _choose_by_contacts(model, candidates)
+    default = reasons = _choose_by_contacts(model, candidates)
     for choice in words.of_field("geoms"):
         pool = pool_of_file(model, words, choice, refusals)
         by = f"chosen by the model's '{choice.name}'"
-        reasons = {g: reason for g, reason in reasons.items() if g not in pool.names}
-        reasons |= _choose_by_words(pool, choice.words, by)
+        chosen = _choose_by_words(pool, choice.words, by, default)
+        reasons = {g: reason for g, reason in reasons.items() if g not in pool.names} | chosen
     return reasons
 
 
