@@ -22,7 +22,7 @@ from buoyancy_mj import (
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.replicas import find_originals
-from buoyancy_mj.hulls.selection import join_words, rename_patterns, split_words
+from buoyancy_mj.hulls.selection import add_geom, join_words, rename_patterns, split_words
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.loads.coefficients import Coefficients, add_coefficients
 from buoyancy_mj.scenes.catalog import model_path
@@ -600,6 +600,11 @@ def test_originals_of_copies_begin_at_zero_and_are_not_there():
     assert dict(find_originals(["rov", "rov0"])) == {"rov": (), "rov0": ()}
     assert "rov" in find_originals(["rov-00", "rov-10", "rov-01", "rov-11"])["rov-10"]
     assert dict(find_originals(["", "rover"])) == {"rover": ()}
+
+
+def test_a_geom_is_added_to_the_choice_of_a_file_by_its_name():
+    assert add_geom("hull* 'my pod'", "foam [1]") == "hull* 'my pod' 'foam [[]1]'"
+    assert add_geom("!mast", "foam") == "!mast"
 
 
 def test_a_selection_follows_its_water_under_a_prefix():

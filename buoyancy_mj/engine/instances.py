@@ -76,7 +76,7 @@ def find_instance_bodies(model: mujoco.MjModel, instance: int) -> tuple[int, ...
     scopes = {i: find_instance_scope(model, i) for i in instances}
     for i, scope in scopes.items():
         for body in np.flatnonzero(owners < 0) if scope != BASE else ():
-            if scope.separates and scope.own_name(str(model.body(body).name)):
+            if scope.separates and scope.has(str(model.body(body).name)):
                 owners[body] = i
 
     # the others

@@ -24,11 +24,19 @@ class Scope:
     suffix: str = ""
     """What stands behind it."""
 
-    def own_name(self, name: str) -> str | None:
-        """A name as the file itself has it; None if it is none of the file's."""
-        end = len(name) - len(self.suffix)
-        mine = name.startswith(self.prefix) and name.endswith(self.suffix)
-        return name[len(self.prefix) : end] if mine and end >= len(self.prefix) else None
+    def has(self, name: str) -> bool:
+        """Whether a name is one of the file's."""
+        affixed = name.startswith(self.prefix) and name.endswith(self.suffix)
+        return affixed and len(name) >= self.length
+
+    def own_name(self, name: str) -> str:
+        """A name of the file's as the file itself has it."""
+        return name[len(self.prefix) : len(name) - len(self.suffix)]
+
+    @property
+    def length(self) -> int:
+        """Length of the prefix and the suffix; the longer, the closer to what they are around."""
+        return len(self.prefix) + len(self.suffix)
 
     @property
     def separates(self) -> bool:
@@ -124,8 +132,8 @@ def assign_geoms(model: mujoco.MjModel, scopes: Iterable[Scope]) -> Belongings:
 
 def _find_owner(names: Sequence[str], scopes: Iterable[Scope]) -> Scope:
     """The scope with the longest prefix and suffix that one of the names has."""
-    owners = [s for s in scopes if any(s.own_name(name) is not None for name in names)]
-    return max(owners, key=lambda scope: (len(scope.prefix) + len(scope.suffix), scope.prefix))
+    owners = [scope for scope in scopes if any(map(scope.has, names))]
+    return max(owners, key=lambda scope: (scope.length, scope.prefix))
 
 
 def _names_in_body(model: mujoco.MjModel, body: int) -> list[str]:
@@ -142,7 +150,7 @@ def _find_own_names(names: Sequence[str], scopes: Sequence[Scope]) -> list[list[
     """What the scope of each name calls it, and the originals of which it may be a copy."""
     copies = find_originals(names)
     stripped = [
-        [own for full in (name, *copies.get(name, ())) if (own := scope.own_name(full)) is not None]
+        [scope.own_name(full) for full in (name, *copies.get(name, ())) if scope.has(full)]
         for name, scope in zip(names, scopes, strict=True)
     ]
     inside = {

@@ -99,6 +99,15 @@ def join_words(words: Iterable[str]) -> str:
     return " ".join(_quote(word) if set(word) & set(_GAPS + "'\"") else word for word in words)
 
 
+def add_geom(text: str, name: str) -> str:
+    """A text 'buoyancy_geoms' that chooses one more geom, by its name."""
+    words = split_words(text, "the choice of geoms")
+    if all(word.startswith("!") for word in words):
+        # the default choice has the geom already
+        return text
+    return join_words([*words, glob.escape(name)])
+
+
 def _quote(word: str) -> str:
     """A word between quotes; those inside it stand between quotes of the other kind."""
     inside = word.replace("'", "'\"'\"'")

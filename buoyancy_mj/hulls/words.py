@@ -98,7 +98,8 @@ class FileWords:
         for choice in self.choices:
             own = [g for g, owner in enumerate(belongings.scopes) if owner == choice.scope]
             names = [name for g in own for name in belongings.names[g]]
-            others = [choice.scope.own_name(geom_name(self.model, g)) or "" for g in behind]
+            full = [name for g in behind if choice.scope.has(name := geom_name(self.model, g))]
+            others = [choice.scope.own_name(name) for name in full]
             for pattern in choice.patterns:
                 if f"{choice.scope.prefix}{pattern}".startswith(slash.prefix):
                     return True
