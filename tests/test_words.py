@@ -48,6 +48,8 @@ AFFIXES = [
     ("fleet/one/", ""),
     ("", "_1"),
     ("r_", "_s"),
+    ("a", "b"),
+    ("rov:", ""),
 ]
 
 
@@ -452,6 +454,16 @@ WRONG = [
         "('mast' does, but it displaces nothing); possible: box, group:0",
     ),
     (
+        text("buoyancy_hulls", "convex"),
+        "the text 'buoyancy_hulls' is none that water reads; "
+        f"did you mean 'buoyancy_hull'? {POSSIBLE}",
+    ),
+    (
+        numeric("rov:aded_mass:hull"),
+        "the numeric 'rov:aded_mass:hull' is none that water reads; "
+        f"did you mean 'added_mass:BODY'? {POSSIBLE}",
+    ),
+    (
         text("my_buoyancy_geoms", "box"),
         f"no moving geom matches 'box' of 'my_buoyancy_geoms'; possible: nothing; {PART}",
     ),
@@ -494,8 +506,8 @@ def test_so_it_is_under_a_prefix(prefix):
         f"no moving geom matches 'flaot*' of '{prefix}buoyancy_geoms'; "
         f"did you mean 'float_a'? possible: float_a, frame, group:0; {PART}"
     )
-    assert refused("buoyancy_fill", "buoyancy_fills") == (
-        f"no moving geom matches 'float*' of '{prefix}buoyancy_fills'; possible: nothing; {PART}"
+    assert refused("buoyancy_fill", "buoyancy_fills").startswith(
+        f"the text '{prefix}buoyancy_fills' is none that water reads; did you mean 'buoyancy_fill'"
     )
     assert refused("added_mass:", "aded_mass:").startswith(
         f"the numeric '{prefix}aded_mass:rov' is none that water reads; did you mean 'added_mass:B"
@@ -683,6 +695,15 @@ def test_bodies_that_come_later_are_in_the_water_too():
         other.attach(spec, prefix="p_", frame=other.worldbody.add_frame())
         hulls = water_in(other.compile()).hulls
         assert [hull.name for hull in hulls] == [f"p_{name}" for name in names]
+
+
+def test_bodies_that_joined_before_are_alone_in_the_water():
+    spec = mujoco.MjSpec.from_file(str(ENVIRONMENT / "buoys.xml"))
+    spec.attach(rov(), prefix="p_", frame=spec.worldbody.add_frame())
+    plugin = spec.body("gate").plugin
+    plugin.active, plugin.plugin_name, plugin.name = True, PLUGIN, "sea"
+    add_water(spec)
+    assert [hull.name for hull in water_in(spec.compile()).hulls] == ["ball"]
 
 
 def test_an_attached_water_and_that_of_the_base_share_the_bodies():

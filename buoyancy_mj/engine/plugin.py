@@ -46,7 +46,8 @@ def add_water(
     Args:
         spec: the model, with its bodies: those that it gets later are in this water too, but do not
             take it along when they alone are attached elsewhere. All its bodies that move are in
-            the water, but those that joined another instance.
+            the water, but those that joined another instance; or those alone that joined this one
+            before.
         water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all
             options.
         instance: name of the plugin's instance in the model.
@@ -74,6 +75,11 @@ def add_water(
     remember_settings(config, settings)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
+    if any(body.plugin.active and body.plugin.name == instance for body in spec.bodies):
+        plugin.config = config
+        return
+
+    # all bodies, also where the model is attached to another
     plugin.config = config | {INSTANCE: instance}
     _join_bodies(spec, instance)
 

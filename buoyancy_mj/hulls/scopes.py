@@ -40,12 +40,20 @@ class Scope:
 
     @property
     def separates(self) -> bool:
-        """Whether its prefix ends, or its suffix begins, with a sign such as '_', '-' or '/'.
+        """Whether signs such as '_', '-' or '/' part its prefix and its suffix from the names.
 
         Otherwise other names may have them by chance.
         """
-        signs = self.prefix[-1:] + self.suffix[:1]
-        return bool(signs) and not signs.isalnum()
+        return not (self == BASE or self.prefix[-1:].isalnum() or self.suffix[:1].isalnum())
+
+    def is_in(self, model: mujoco.MjModel) -> bool:
+        """Whether a moving body has all its names in this scope."""
+        for body in find_moving_bodies(model).nonzero()[0]:
+            names = [str(model.body(body).name), *_names_in_body(model, int(body))]
+            names = [name for name in names if name]
+            if names and all(map(self.has, names)):
+                return True
+        return False
 
 
 BASE = Scope()

@@ -149,7 +149,8 @@ def check_custom_names(model: mujoco.MjModel) -> None:
             raise ModelError(
                 f"'{name}' is a <{kind}> and is read only as a <{needed}>; make it one"
             )
-        if not needed and (near := _find_near_keyword(name)):
+        known = needed and _is_plausible(model, name)
+        if not known and (near := _find_near_keyword(name)):
             raise ModelError(
                 f"the {kind} '{name}' is none that water reads; "
                 f"{choices(near, [*CUSTOM_TEXTS.values(), *(f'{q}:BODY' for q in QUANTITIES)])}"
@@ -163,13 +164,24 @@ def _kind_of_keyword(name: str) -> str:
     return "numeric" if split_quantity(name) else ""
 
 
+def _is_plausible(model: mujoco.MjModel, name: str) -> bool:
+    """Whether what stands around a keyword may come from an attachment.
+
+    What a sign such as '_' parts from the keyword may. Of any other, as of the 's' of
+    'buoyancy_hulls', a moving body and its geoms must show it too.
+    """
+    scopes = [scope for word in CUSTOM_TEXTS.values() if (scope := find_scope(name, word))]
+    return all(scope == BASE or scope.separates or scope.is_in(model) for scope in scopes)
+
+
 def _find_near_keyword(name: str) -> str:
     """The keyword that a part of a name nearly is; '' if there is none.
 
     Of 'QUANTITY:BODY' the quantity counts. A quantity without a body counts if it is the whole name
     behind slashes.
     """
-    before, colon, _ = name.partition(":")
+    before, colon, _ = name.rpartition(":")
+    before = before or name
     whole = name.rpartition("/")[2]
     if not colon and whole in QUANTITIES:
         return f"{whole}:BODY"
