@@ -128,6 +128,15 @@ def test_an_attached_vehicle_keeps_what_its_file_states(prefix, suffix):
     assert_is_the_rov(model, model.body(f"{prefix}rov{suffix}").id)
 
 
+AFFIX = st.text(st.sampled_from("abrov01_-/:.[]*? é'"), max_size=6)
+
+
+@given(prefix=AFFIX, suffix=AFFIX)
+def test_so_it_does_under_any_prefix_and_suffix(prefix, suffix):
+    model = attached((prefix, suffix)).compile()
+    assert_is_the_rov(model, 1)
+
+
 @pytest.mark.parametrize(
     "pair",
     [
@@ -135,6 +144,8 @@ def test_an_attached_vehicle_keeps_what_its_file_states(prefix, suffix):
         [("r1_", ""), ("r10_", "")],
         [("", "_0"), ("", "_1")],
         [("a", ""), ("ab", "")],
+        [("", "a"), ("", "")],
+        [("a", ""), ("a", "a")],
         [("r0/", ""), ("r0_", "")],
     ],
 )

@@ -73,17 +73,23 @@ def explain_missing(scope: Scope) -> str:
     return "; if only a part of its file was attached, delete the word from the spec before that"
 
 
-def find_slash_scopes(model: mujoco.MjModel) -> set[Scope]:
+def find_slash_scopes(model: mujoco.MjModel, scopes: Iterable[Scope]) -> set[Scope]:
     """Scopes of prefixes that end in a slash, 'environment/', which names of moving bodies have.
 
     A slash tells of an attached file even where that file states nothing. An unnamed body goes by
     its geoms.
+
+    Args:
+        model: any model.
+        scopes: those that state anything; a slash in their suffixes is no prefix.
     """
     names = []
     for body in find_moving_bodies(model).nonzero()[0]:
         name = str(model.body(body).name)
         names += [name] if name else _names_in_body(model, int(body))
-    return {Scope(name[: name.rindex("/") + 1]) for name in names if "/" in name}
+    known = {BASE, *scopes}
+    stems = [name.removesuffix(_find_owner([name], known).suffix) for name in names]
+    return {Scope(stem[: stem.rindex("/") + 1]) for stem in stems if "/" in stem}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -118,12 +124,15 @@ def assign_geoms(model: mujoco.MjModel, scopes: Iterable[Scope]) -> Belongings:
         parent = body_scopes[model.body_parentid[body]]
         body_scopes.append(_find_owner(signs, possible) if signs else parent)
 
-    # the geoms
+    # the geoms, which may begin or end like another file's by chance where no sign parts the names
     geom_names = [str(model.geom(geom).name) for geom in range(model.ngeom)]
     copies = find_originals(geom_names)
+    sure = {scope for scope in possible if scope == BASE or scope.separates}
     geom_scopes = [
-        _find_owner([name, *copies[name]], possible) if name else body_scopes[body]
-        for name, body in zip(geom_names, model.geom_bodyid, strict=True)
+        _find_owner([name, *copies[name]], sure | {own}) if name else own
+        for name, own in zip(
+            geom_names, (body_scopes[body] for body in model.geom_bodyid), strict=True
+        )
     ]
 
     # their names there

@@ -81,7 +81,7 @@ class FileWords:
                 scope = find_scope(name, f"{quantity[0]}:")
                 assert scope is not None
                 scopes.add(Scope(scope.prefix))
-        slashes = find_slash_scopes(self.model) - scopes
+        slashes = find_slash_scopes(self.model, scopes) - scopes
         belongings = assign_geoms(self.model, (scopes | slashes) - {BASE})
         named = {scope for scope in slashes if self._names(scope, belongings)}
         if not named:
