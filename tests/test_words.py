@@ -724,6 +724,11 @@ def test_an_attached_water_and_that_of_the_base_share_the_bodies():
     model = spec.compile()
     assert [hull.name for hull in water_in(model, "sea").hulls] == ["ball"]
     assert [hull.name for hull in water_in(model, "p_sea").hulls] == ["p_float_a"]
+    with pytest.raises(
+        ModelError,
+        match="the model has 2 waters of its own; name one of them; possible: p_sea, sea",
+    ):
+        water_in(model)
 
 
 def test_each_of_two_waters_reads_what_the_file_states_of_its_own_bodies():

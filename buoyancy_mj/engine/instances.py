@@ -46,10 +46,13 @@ def find_instance(model: mujoco.MjModel, name: str | None) -> int:
             "the model has no water of its own: add_water(spec, water) gives it one before it is "
             "compiled, and Buoyancy(model, water) puts it into water as it is"
         )
-    if name not in instances:
+    if name is None:
         raise ModelError(
-            f"the model has no water named '{name or ''}'; {choices(name or '', instances)}"
+            f"the model has {len(instances)} waters of its own; name one of them; "
+            f"{choices('', instances)}"
         )
+    if name not in instances:
+        raise ModelError(f"the model has no water named '{name}'; {choices(name, instances)}")
     return instances[name]
 
 
