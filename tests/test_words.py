@@ -32,7 +32,7 @@ from buoyancy_mj.settings.settings import Settings
 # MuJoCo's own, of a suffix alone
 pytestmark = pytest.mark.filterwarnings("ignore:Attaching a spec with an empty prefix")
 
-DATA = Path(__file__).parent / "data"
+DATA = Path(__file__).parent / "data" / "cases"
 ROV = DATA / "attached_fleet" / "rov.xml"
 ENVIRONMENT = DATA / "environment_choice"
 VOLUME = 0.4 * 0.2 * 0.2 * 0.5

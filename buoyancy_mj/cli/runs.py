@@ -42,6 +42,13 @@ def run(
     live: Annotated[
         bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
     ] = False,
+    through: Annotated[
+        str,
+        typer.Option(
+            help="Where the forces enter: qfrc_passive, or xfrc_applied, where sensors see them.",
+            metavar="ARRAY",
+        ),
+    ] = "qfrc_passive",
     as_json: Json = False,
 ) -> None:
     """Run a scene headless, record it and sum it up."""
@@ -55,7 +62,7 @@ def run(
     with err.status(
         "preparing (the first run after an installation compiles, which takes some seconds)"
     ):
-        simulation = Simulation(read_scene(path, settings))
+        simulation = Simulation(read_scene(path, settings), through=through)
     target = None if no_record else record or Path("recordings") / f"{path.stem}.rrd"
     recording = _run_to_end(simulation, target, live=live)
 

@@ -9,6 +9,7 @@ import mujoco
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.engine.checks import skips_passive
+from buoyancy_mj.engine.forks import make_lock
 from buoyancy_mj.engine.instances import (
     PLUGIN,
     find_instance_bodies,
@@ -26,7 +27,7 @@ MOST_UNUSED = 32
 MOST_SETTINGS = 1024
 """Settings that are remembered; older ones are read from their texts."""
 
-LOCK = threading.RLock()
+LOCK = make_lock()
 """Held while a water is looked up, made or attached to data: MuJoCo may ask from any thread."""
 _waters: dict[bytes, Buoyancy] = {}
 """Waters by the fingerprint of their models, the last used last."""

@@ -19,10 +19,15 @@ from buoyancy_mj.statics.vessel import Vessel
 
 
 def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
-    """Draw charts of all vessels as PNG files in a folder; return each caption and its file."""
+    """Draw charts of vessels as PNG files in a folder; return each caption and its file.
+
+    A vessel with a hull whose mesh is refused has none.
+    """
     files = []
     with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
         for vessel in inspection.vessels:
+            if vessel.refused:
+                continue
             name = vessel.total.body
             stem = name.replace("/", "-").replace(" ", "_")
             for kind, caption, figure in _draw_figures(vessel):

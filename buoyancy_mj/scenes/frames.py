@@ -22,7 +22,9 @@ class Energy:
     kinetic: float
     """Kinetic energy of the bodies [J]."""
     potential: float
-    """Potential energy of the bodies in gravity (and in springs) [J], zero at z = 0."""
+    """Potential energy of the bodies in gravity (and in springs) [J], zero at z = 0.
+
+    What gravity compensation carries has none."""
     buoyancy: float
     """Energy [J] that lifted the displaced water from its centroid to the surface:
     rho g V (elevation - z)."""

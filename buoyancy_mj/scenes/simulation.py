@@ -1,5 +1,6 @@
 """`Simulation`: run a scene frame by frame."""
 
+import functools
 import math
 import time
 import warnings
@@ -11,9 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.engine.callbacks import PASSIVE
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.divergence import check_finite
@@ -31,19 +34,22 @@ class Simulation(ReadOnly):
 
     Args:
         scene: what to run.
+        through: where the water's forces enter; by 'qfrc_passive' the water is a part of the model,
+            by 'xfrc_applied' a callback, see `Buoyancy.installed`.
 
     Raises:
         ModelError, MeshError, SceneError: what `assemble` and `Buoyancy` raise; also a vehicle
             whose displacement is absurd for its mass.
+        EngineError: there is no such `through`.
 
     Example:
         `drafts = [frame.draft for frame in Simulation(read_scene(path)).frames()]`
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, *, through: str = PASSIVE) -> None:
         self.scene = scene
         """The scene."""
-        self.model, self.data, bodies = assemble(scene, with_water=True)
+        self.model, self.data, bodies = assemble(scene, with_water=through == PASSIVE)
         # a diverging simulation ends with an error, and is not set back to its start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -57,7 +63,7 @@ class Simulation(ReadOnly):
             self._lend_water = nullcontext
         else:
             self.buoyancy = Buoyancy(self.model, scene)
-            self._lend_water = self.buoyancy.installed
+            self._lend_water = functools.partial(self.buoyancy.installed, through=through)
 
         # the vehicle
         floating = self.buoyancy.floating
@@ -70,8 +76,10 @@ class Simulation(ReadOnly):
         self._masses = self.model.body_mass[self.vehicle]
         self.mass = float(self._masses.sum())
         """Mass of the vehicle [kg]."""
-        self.weight = self.mass * self.buoyancy.gravity
-        """Weight of the vehicle [N]."""
+        weighing = find_weighing_masses(self.model)
+        self.weight = float(weighing[self.vehicle].sum()) * self.buoyancy.gravity
+        """Weight of the vehicle [N], less what gravity compensation carries."""
+        self._carried_masses = self.model.body_mass - weighing
         self.displacement = float(
             scene.water.density * sum(hull.displaced_volume for hull in self.hulls)
         )
@@ -80,6 +88,7 @@ class Simulation(ReadOnly):
         """Index of the vehicle's root body."""
         _check_scale(self.mass, self.displacement)
         _warn_of_second_drag(self.model, scene)
+        _warn_of_compensation(self.mass, float(self._carried_masses[self.vehicle].sum()))
 
         # what a run leaves
         self._monitor = Monitor(self.model, self.vehicle, self.hulls, scene.water)
@@ -88,7 +97,8 @@ class Simulation(ReadOnly):
         self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
 
         # compile what a fresh installation has not compiled, before the clock runs
-        mujoco.mj_forward(self.model, self._frame_data)
+        with self._lend_water():
+            mujoco.mj_forward(self.model, self._frame_data)
         scene.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
@@ -193,6 +203,9 @@ class Simulation(ReadOnly):
         loads = self.buoyancy.loads(data)
         self._monitor.add_poses(poses_of(data), now)
 
+        # what gravity compensation adds to MuJoCo's potential energy
+        lifted_by_engine = self._carried_masses @ data.xipos[:, 2] * self.buoyancy.gravity
+
         # what they mean
         water = self.scene.water
         centre = self.centre_of_mass(data)
@@ -207,7 +220,7 @@ class Simulation(ReadOnly):
             elevation=float(water.elevation(centre[0], centre[1], now)),
             energy=Energy(
                 kinetic=float(data.energy[1]),
-                potential=float(data.energy[0]),
+                potential=float(data.energy[0] - lifted_by_engine),
                 buoyancy=float(np.nansum(loads.hull.force[:, 2] * lifted)),
             ),
         )
@@ -237,6 +250,17 @@ def _warn_of_second_drag(model: mujoco.MjModel, scene: Scene) -> None:
         BuoyancyWarning,
         stacklevel=3,
     )
+
+
+def _warn_of_compensation(mass: float, carried: float) -> None:
+    """Tell of gravity compensation, which lifts a vehicle as well as the water does."""
+    if carried:
+        warnings.warn(
+            f"gravity compensation (gravcomp) carries {carried:.4g} kg of the vehicle's "
+            f"{mass:.4g} kg, and the water lifts it as well; the net weight counts both",
+            BuoyancyWarning,
+            stacklevel=3,
+        )
 
 
 def _roll_pitch_yaw(rotation: NDArray[np.float64]) -> NDArray[np.float64]:

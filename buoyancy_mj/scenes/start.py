@@ -8,8 +8,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BuoyancyWarning, SceneError, choices
+from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.tethers import list_roots
 from buoyancy_mj.scenes.scene import Scene, Start
 from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.equilibrium import find_equilibrium
@@ -64,11 +66,16 @@ def place_vehicle(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodi
 
 
 def settle_vehicle(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: int) -> None:
-    """Bring each floating tree of the vehicle, the first `bodies` of the model, to rest."""
-    hulls = find_hulls(model, scene.selection, range(1, bodies))
-    for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
-        name = body_name(model, root)
-        vessel = build_vessel(model, scene.water, data.qpos, body=name, selection=scene.selection)
+    """Bring each vessel of the vehicle, the first `bodies` of the model, to rest.
+
+    What welds and connects hold together moves as one.
+    """
+    with_hulls = [hull.body for hull in find_hulls(model, scene.selection, range(1, bodies))]
+    for group in group_floating_bodies(model):
+        if not np.isin(group, with_hulls).any():
+            continue
+        root = body_name(model, list_roots(model, group)[0])
+        vessel = build_vessel(model, scene.water, data.qpos, body=root, selection=scene.selection)
         data.qpos[:] = find_equilibrium(vessel).qpos
 
 

@@ -38,8 +38,9 @@ def find_heave_balance(
         height: of its centre of gravity, where the search begins [m]; where the vessel is if None.
 
     Raises:
-        EquilibriumError: the vessel sinks.
+        EquilibriumError: the vessel sinks, or weighs nothing.
     """
+    vessel.check_weight()
     z = float(vessel.position[2]) if height is None else height
     tolerance = NEUTRAL * vessel.mass
     if vessel.reserve < -tolerance:

@@ -116,8 +116,8 @@ def ballast(
 
     Raises:
         BallastError: the sites cannot do it; the message says what they could.
-        ModelError: neither draft nor reserve is given, or both are; a number makes no sense; or see
-            `statics.building.build_vessel`.
+        ModelError: neither draft nor reserve is given, or both are; a number makes no sense; joints
+            or a weld hold the vessel; or see `statics.building.build_vessel`.
         MeshError: a mesh bounds no volume.
 
     Example:
@@ -125,6 +125,7 @@ def ballast(
     """
     _check_numbers(draft, reserve, (heel, trim, bg), (mass_density, foam_density))
     vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel.check_free()
     pose = _pose_at_target(vessel, draft, heel, trim)
 
     # the sites, less those where foam lifts less than it weighs
