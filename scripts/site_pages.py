@@ -206,7 +206,9 @@ def plugin_page() -> str:
             "A value is written as in TOML, without blanks inside. A wave, a current, a method and",
             "a damping are a kind and its fields, `regular amplitude=0.3 period=2`; a semicolon",
             "separates waves. A constant current is three numbers; `geoms`, `hull` and `fill` are",
-            "patterns between blanks. The fields are those of the [tables of a scene](scene.md).\n",
+            "patterns between blanks; quotes keep one with a blank together. `add_water` writes",
+            "the key `instance` too, by which the water knows whether it was attached. The fields",
+            "are those of the [tables of a scene](scene.md).\n",
         ]
     )
 

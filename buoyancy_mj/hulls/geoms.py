@@ -47,7 +47,8 @@ def find_hulls(
         bodies: indices of the bodies whose geoms may displace; None for all.
 
     Raises:
-        ModelError: no geom is left, or a pattern matches none.
+        ModelError: no geom is left, or a pattern or anything else in `<custom>` finds nothing to
+            hold for.
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
     verdicts = judge_geoms(model, selection, bodies)

@@ -22,6 +22,24 @@ SOURCES = ("model", "estimate", "none")
 """Where added mass comes from: the model's numerics; an estimate for bodies without; nowhere."""
 
 
+def check_source(source: object) -> None:
+    """Refuse what is no source of added mass.
+
+    Raises:
+        ModelError: it is none of `SOURCES`, None or a mapping by the names of bodies.
+    """
+    if source is None or (isinstance(source, str) and source in SOURCES):
+        return
+    if not isinstance(source, Mapping):
+        raise ModelError(
+            f"added mass is {' '.join(repr(source).split())}; "
+            f"{choices(str(source), SOURCES)}, or matrices by body"
+        )
+    for name in source:
+        if not isinstance(name, str):
+            raise ModelError(f"added mass is given for body {name!r}; a body's name is a text")
+
+
 def resolve_added_mass(
     model: mujoco.MjModel,
     hulls: Sequence[Hull],
@@ -40,6 +58,8 @@ def resolve_added_mass(
         ModelError: an unknown source or body; a matrix of another size, not finite, not symmetric
             or not positive; or one that does not fit into what MuJoCo keeps of a body's inertia.
     """
+    check_source(source)
+
     # by the user, by the model, or by an estimate
     by_body = group_by_body(hulls)
     matrices = _read_matrices(model, list(by_body), source)
@@ -125,12 +145,8 @@ def _read_matrices(
         }
     elif source in ("model", "estimate"):
         numbers = read_numerics(model, QUANTITY, bodies)
-    elif source in (None, "none"):
-        numbers = {}
     else:
-        raise ModelError(
-            f"added mass is '{source}'; {choices(source, SOURCES)}, or matrices by body"
-        )
+        numbers = {}
     return {
         body: parse_matrix(value, f"the added mass of body '{body_name(model, body)}'")
         for body, value in numbers.items()

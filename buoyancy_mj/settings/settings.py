@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices
 from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.loads.added_mass import check_source
 from buoyancy_mj.loads.damping import Damping, Panels
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
@@ -25,7 +26,7 @@ class Settings:
     of the water. A scene has them beside its vehicle, and the plugin keeps them as texts.
 
     Raises:
-        WaterError, ModelError: a water, a damping or a selection of another kind.
+        WaterError, ModelError: a water, a damping, an added mass or a selection of another kind.
         MethodError: an unknown method or pressure; or a pressure, or damping, that needs another
             method.
 
@@ -66,6 +67,7 @@ class Settings:
                 f"selection is {self.selection!r}; "
                 "it must be Selection(geoms=..., hull=..., fill=...)"
             )
+        check_source(self.added_mass)
 
         # names
         object.__setattr__(self, "method", parse_method(self.method))
