@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError
+from buoyancy_mj.statics.attitude import Attitude
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.vessel import Vessel
 
@@ -14,18 +15,27 @@ NEUTRAL = 1e-6
 """Part of its mass by which the reserve of a vessel that hovers may differ from zero.
 
 MuJoCo keeps vertices in single precision."""
-SEARCH_ANGLE = 0.1
-"""How far to look around where the curvature tells nothing [rad]."""
 _BALANCED = 1e-11
 """Torque over weight times radius at which a vessel is at rest."""
+_SOFT = 1e-6
+"""Stiffness over weight times radius below which a lower pose may lie beside a balance."""
+_LOWER = 1e-11
+"""Fall of energy, over weight times radius, that tells a lower pose from rounding."""
+_LOOK_AROUND = 1e-3, 1e-2, 1e-1
+"""How far to look for a lower pose beside a balance [rad]."""
 _MOST_STEPS = 200
 """Steps in attitude after which the search gives up."""
 _LONGEST_STEP = 0.5
 """Largest turn in one step [rad]."""
+_SHORTEST_STEP = 1e-12
+"""Turn below which no step can lead farther [rad]."""
 
 
 def find_heave_balance(
-    vessel: Vessel, rotation: NDArray[np.float64], height: float | None = None
+    vessel: Vessel,
+    rotation: NDArray[np.float64],
+    height: float | None = None,
+    tolerance: float = 1e-14,
 ) -> FloatingPose:
     """Find the draft at which a vessel displaces its mass, its attitude held.
 
@@ -36,26 +46,29 @@ def find_heave_balance(
         vessel: the vessel.
         rotation: its attitude, world_from_vessel (3, 3).
         height: of its centre of gravity, where the search begins [m]; where the vessel is if None.
+        tolerance: part of its whole volume by which the wet volume may be off.
 
     Raises:
         EquilibriumError: the vessel sinks.
     """
     z = float(vessel.position[2]) if height is None else height
-    tolerance = NEUTRAL * vessel.mass
-    if vessel.reserve < -tolerance:
+    neutral = NEUTRAL * vessel.mass
+    if vessel.reserve < -neutral:
         raise EquilibriumError(
             f"'{vessel.name}' sinks: it weighs {vessel.mass:.4g} kg and displaces "
             f"{vessel.mass + vessel.reserve:.4g} kg of water fully submerged, "
             f"{-vessel.reserve:.4g} kg too little; take mass out or add foam (see ballast)"
         )
-    if vessel.reserve <= tolerance:
+    if vessel.reserve <= neutral:
         _, high = vessel.heights(rotation)
         z = min(z, vessel.water.level - high)
         return pose_vessel(vessel, [*vessel.position[:2], z], rotation)
-    return _find_floating_height(vessel, rotation, z)
+    return _find_floating_height(vessel, rotation, z, tolerance)
 
 
-def _find_floating_height(vessel: Vessel, rotation: NDArray[np.float64], z: float) -> FloatingPose:
+def _find_floating_height(
+    vessel: Vessel, rotation: NDArray[np.float64], z: float, tolerance: float
+) -> FloatingPose:
     """Find the height of the centre of gravity at which a vessel floats, starting from `z` [m]."""
     level = vessel.water.level
     volume = vessel.mass / vessel.water.density
@@ -64,14 +77,14 @@ def _find_floating_height(vessel: Vessel, rotation: NDArray[np.float64], z: floa
     while True:
         pose = pose_vessel(vessel, [*vessel.position[:2], z], rotation)
         excess = pose.volume - volume
-        if abs(excess) <= 1e-14 * vessel.volume:
+        if abs(excess) <= tolerance * vessel.volume:
             return pose
 
         # the balance lies above a pose that displaces too much, below one that displaces too little
         low, high = (z, high) if excess > 0.0 else (low, z)
 
         # a Newton step by the waterplane, or half the interval where that leads out of it
-        area = pose.waterplane.area
+        area = pose.waterplane_area
         z = z + excess / area if area > 0.0 else math.inf
         if not low < z < high:
             z = 0.5 * (low + high)
@@ -93,7 +106,9 @@ def find_balance(
 
     At that draft the energy is weight times the height of G over B, a smooth function of attitude
     alone. Newton steps with the exact stiffness make it smallest, with negative curvature turned
-    downhill, within a trust region. So each step leads down, and off a summit too.
+    downhill, within a trust region. So each step leads down, and off a summit too: the way that the
+    torque drives, be it ever so small. Where there is none the vessel heels to starboard; where
+    only trim leads down, it trims by the bow.
 
     Args:
         vessel: a vessel that floats.
@@ -117,13 +132,17 @@ def find_balance(
         values, vectors = np.linalg.eigh(basis.T @ tilt_stiffness(pose) @ basis)
         principal = basis @ vectors
 
-        # in balance: look for a lower pose nearby
-        if np.linalg.norm(torque) <= _BALANCED * scale:
-            lower = _find_lower(pose, values, principal) if stable else None
-            if lower is None:
-                return pose, count
-            pose = lower
-            continue
+        # in balance, or as good as on a summit: look for a lower pose nearby
+        balanced = bool(np.linalg.norm(torque) <= _BALANCED * scale) or reach < _SHORTEST_STEP
+        if stable and (balanced or _is_poised(values, vectors.T @ torque, scale)):
+            lower = _find_lower(pose, values, principal)
+            if lower is not None:
+                pose, reach = lower, _LONGEST_STEP
+                continue
+        if reach < _SHORTEST_STEP and not stable:
+            break
+        if balanced:
+            return pose, count
 
         # a step within the trust region, which grows with success
         step = _newton_step(values, vectors.T @ torque, 1e-9 * scale, reach, downhill=stable)
@@ -136,10 +155,6 @@ def find_balance(
         # and shrinks with failure; flat faces in the surface may leave a kink, where torques
         # change sign at once
         reach = 0.25 * min(reach, float(np.linalg.norm(step)))
-        if reach < 1e-12:
-            if stable:
-                return pose, count
-            break
     raise EquilibriumError(
         f"no balance of '{vessel.name}' was found from this start: after {count + 1} steps "
         f"{float(np.linalg.norm(basis.T @ pose.torque)):.3g} N m are left; start elsewhere"
@@ -164,25 +179,67 @@ def tilt_stiffness(pose: FloatingPose) -> NDArray[np.float64]:
     return np.asarray(turning - np.outer(coupling, coupling) / heave, float)
 
 
+def _is_poised(values: NDArray[np.float64], torque: NDArray[np.float64], scale: float) -> bool:
+    """Whether a vessel is so near to a summit that rounding hides where a Newton step leads.
+
+    Args:
+        values: principal stiffnesses (k,) [N m], ascending.
+        torque: torques about the principal axes (k,) [N m].
+        scale: weight times radius [N m].
+    """
+    if values[0] >= -_SOFT * scale:
+        return False
+    least = np.maximum(np.abs(values), _SOFT * scale)
+    return float((torque**2 / least).sum()) <= 2.0 * _LOWER * scale
+
+
 def _find_lower(
-    pose: FloatingPose, values: NDArray[np.float64], axes: NDArray[np.float64]
+    pose: FloatingPose, values: NDArray[np.float64], principal: NDArray[np.float64]
 ) -> FloatingPose | None:
     """Find a lower pose beside a summit or a saddle, or where the curvature tells nothing.
 
     Args:
-        pose: a pose in balance.
+        pose: a pose in balance, or nearly so.
         values: its principal stiffnesses (k,) [N m], ascending.
-        axes: their axes (2, k).
+        principal: their axes (2, k).
 
     Returns:
         The pose; None at the bottom of a valley.
     """
     scale = pose.vessel.weight * pose.vessel.radius
-    if values[0] >= 1e-6 * scale:
+    soft = principal[:, values < _SOFT * scale]
+    if not soft.size:
         return None
-    angles = (way * part * SEARCH_ANGLE for part in (1.0, 0.1, 0.01) for way in (1.0, -1.0))
-    around = (tilt(pose, angle * axes[:, 0]) for angle in angles)
-    return next((other for other in around if other.energy < pose.energy - 1e-10 * scale), None)
+
+    # along the softest axis, and across it where that is soft too
+    softest = principal[:, values <= values[0] + _SOFT * scale]
+    along = _choose_axis(pose, softest)
+    axes = [along]
+    if soft.shape[1] > 1:
+        across = np.array([-along[1], along[0]])
+        axes += [across, (along + across) / math.sqrt(2.0), (along - across) / math.sqrt(2.0)]
+    turns = (way * angle * axis for angle in _LOOK_AROUND for axis in axes for way in (1.0, -1.0))
+    around = (tilt(pose, turn) for turn in turns)
+    return next((other for other in around if other.energy < pose.energy - _LOWER * scale), None)
+
+
+def _choose_axis(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Choose the axis (2,) about which a vessel falls off a summit, turned the way that it falls.
+
+    That is the way of the torque; without one to starboard, else by the bow.
+
+    Args:
+        pose: the pose on the summit.
+        axes: the axes about which it falls alike (2, k), orthonormal.
+    """
+    onto = axes @ axes.T
+    torque = onto @ pose.torque / (pose.vessel.weight * pose.vessel.radius)
+    heading = Attitude.from_matrix(pose.rotation).heading
+    heel = onto @ [math.cos(heading), math.sin(heading)]
+    trim = onto @ [-math.sin(heading), math.cos(heading)]
+    least = (torque, _BALANCED), (heel, 1e-3), (trim, 0.0)
+    way = next(way for way, length in least if np.linalg.norm(way) > length)
+    return np.asarray(way / np.linalg.norm(way), float)
 
 
 def _newton_step(

@@ -1,0 +1,86 @@
+"""`find_lows`: attitudes from which every rest pose of a vessel lies downhill."""
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from buoyancy_mj.statics.balance import find_heave_balance
+from buoyancy_mj.statics.floating_pose import FloatingPose
+from buoyancy_mj.statics.vessel import Vessel
+
+_SUBDIVISIONS = 4
+"""How often the icosahedron of attitudes is subdivided: 2562 attitudes, 4 degrees apart."""
+_DRAFT_TOLERANCE = 1e-4
+"""Part of the volume by which a draft may be off; the energy is off by the square of that."""
+_FLAT = 1e-6
+"""Difference of energy over weight times radius of attitudes side by side that lie level."""
+
+
+def find_lows(vessel: Vessel) -> list[FloatingPose]:
+    """Find the attitudes where a vessel's energy is lower than all round, lowest first.
+
+    At the draft that carries its weight the energy depends on the direction of the vertical, seen
+    from the vessel, alone. So a grid over the sphere of directions sees all attitudes. Of lows on
+    one plain, as all over a ball, the lowest counts.
+
+    Raises:
+        EquilibriumError: the vessel sinks.
+    """
+    poses, edges = _survey_attitudes(vessel)
+    energies = np.array([pose.energy for pose in poses]) / (vessel.weight * vessel.radius)
+
+    # none of the neighbours is lower
+    around = np.full(len(poses), np.inf)
+    for one, other in (edges.T, edges.T[::-1]):
+        np.minimum.at(around, one, energies[other])
+    lows = np.flatnonzero(energies <= around)
+
+    # the lowest of each plain
+    one, other = edges[np.abs(np.diff(energies[edges]))[:, 0] <= _FLAT].T
+    level = coo_array((np.ones(len(one)), (one, other)), shape=(len(poses), len(poses)))
+    _, plains = connected_components(level, directed=False)
+    lows = lows[np.argsort(energies[lows], kind="stable")]
+    _, first = np.unique(plains[lows], return_index=True)
+    return [poses[low] for low in lows[np.sort(first)]]
+
+
+def turn_upright(
+    up: NDArray[np.float64], towards: NDArray[np.float64] | None = None
+) -> NDArray[np.float64]:
+    """Turn a direction of the vessel to the vertical.
+
+    Args:
+        up: the direction in the vessel's axes (3,), a unit vector.
+        towards: another, square to it, that comes to point along x; any if None.
+
+    Returns:
+        The attitude world_from_vessel (3, 3).
+    """
+    if towards is None:
+        towards = np.cross(up, np.eye(3)[np.abs(up).argmin()])
+        towards /= np.linalg.norm(towards)
+    return np.stack([towards, np.cross(up, towards), up])
+
+
+def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.int64]]:
+    """A vessel at its draft in attitudes all round (n), and which of them are neighbours (m, 2)."""
+    ball = trimesh.creation.icosahedron()
+    ups, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
+    heights = np.full(len(ups), vessel.position[2])
+    poses: list[FloatingPose] = []
+    for finer in range(_SUBDIVISIONS + 1):
+        # each draft begins at that between its neighbours
+        if finer:
+            ups, faces, between = trimesh.remesh.subdivide(
+                ups, faces, vertex_attributes={"height": heights[:, None]}
+            )
+            heights = between["height"][:, 0]
+            ups = ups / np.linalg.norm(ups, axis=1)[:, None]
+        for up, height in zip(ups[len(poses) :], heights[len(poses) :], strict=True):
+            rotation = turn_upright(up)
+            poses.append(find_heave_balance(vessel, rotation, height, _DRAFT_TOLERANCE))
+        heights = np.array([pose.position[2] for pose in poses])
+    edges = np.sort(trimesh.geometry.faces_to_edges(faces), axis=1)
+    return poses, np.unique(edges, axis=0)
