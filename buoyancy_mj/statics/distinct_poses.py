@@ -1,4 +1,4 @@
-"""Which rest poses of a vessel are one: a ball that rolls from one to the other climbs nothing."""
+"""Which rest poses of a vessel are one: it turns from one to the other, and nothing resists."""
 
 import math
 from collections.abc import Sequence
@@ -6,27 +6,25 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.statics.balance import find_heave_balance, tilt, tilt_stiffness
+from buoyancy_mj.statics.balance import tilt, tilt_stiffness
 from buoyancy_mj.statics.floating_pose import FloatingPose
-from buoyancy_mj.statics.lows import turn_upright
 
-LEAST_RISE = 1e-5
-"""Rise of energy, over weight times radius, that parts two rest poses.
+FREE = 5e-4
+"""Stiffness over weight times radius below which a turn counts as free.
 
-Facets of a ball are 7e-6 high, those of a cylinder with 24 sides 2e-6."""
-_SAME = 1e-4
-"""Angle between two poses below which they are one [rad]."""
-_NEARBY = math.pi / 4.0
-"""Angle between two poses up to which a way between them is sought [rad]."""
-_STRIDE = 0.03
-"""Stride of the look at that way [rad]."""
+A cylinder with 24 sides resists with 2e-4, a ball of 5120 facets with 5e-5."""
+_NEARBY = 0.5 * math.pi
+"""Angle between two poses up to which a way from one to the other is sought [rad]."""
+_STRIDE = 0.04
+"""Stride on that way [rad]."""
 
 
 def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
     """Group rest poses that differ by heading alone, or by a roll that nothing resists.
 
-    Two poses are one if the way from the higher to the lower rises by less than `LEAST_RISE`, or if
-    they are so with others between them: round a log, or all over a ball.
+    Two poses are one if the energy on the way from the higher to the lower stays below that of a
+    turn with a stiffness of `FREE`, or if they are so with others between them: round a log, or all
+    over a ball.
 
     Args:
         poses: rest poses of one vessel (n).
@@ -35,47 +33,56 @@ def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
         The number of the group of each (n,).
     """
     ups = np.array([pose.rotation[2] for pose in poses])
-    crosses = np.linalg.norm(np.cross(ups[:, None], ups), axis=2)
-    angles = np.arctan2(crosses, ups @ ups.T)
+    groups = np.arange(len(poses))
 
     # the nearest first, whose way is the shortest
-    groups = np.arange(len(poses))
     ones, others = np.triu_indices(len(poses), 1)
-    order = np.argsort(angles[ones, others], kind="stable")
-    for i, j in zip(ones[order], others[order], strict=True):
-        if angles[i, j] > _NEARBY:
+    cosines = (ups @ ups.T)[ones, others]
+    for k in np.argsort(-cosines, kind="stable"):
+        if cosines[k] < math.cos(_NEARBY):
             break
-        if groups[i] == groups[j]:
-            continue
-        if angles[i, j] <= _SAME or _is_level_between(poses[i], poses[j], angles[i, j]):
+        i, j = ones[k], others[k]
+        if groups[i] != groups[j] and _is_level_between(poses[i], poses[j]):
             groups[groups == groups[j]] = groups[i]
     return groups
 
 
-def _is_level_between(one: FloatingPose, two: FloatingPose, angle: float) -> bool:
-    """Whether the way between two poses, `angle` apart [rad], rises over neither of them."""
-    vessel = one.vessel
-    highest = max(one.energy, two.energy) + LEAST_RISE * vessel.weight * vessel.radius
-    start, end = one.rotation[2], two.rotation[2]
-    towards = (end - start * math.cos(angle)) / math.sin(angle)
+def _is_level_between(one: FloatingPose, two: FloatingPose) -> bool:
+    """Whether a vessel turns freely from the higher of two poses to the lower."""
+    start, goal = (one, two) if one.energy >= two.energy else (two, one)
+    scale = start.vessel.weight * start.vessel.radius
+    pose = start
+    for _ in range(math.ceil(2.0 * _angle_between(start, goal) / _STRIDE)):
+        if _angle_between(pose, goal) <= _STRIDE:
+            return True
 
-    # along the great circle from one vertical to the other, the middle first
-    parts = np.linspace(0.0, angle, math.ceil(angle / _STRIDE) + 2)[1:-1]
-    for part in parts[np.argsort(np.abs(parts - 0.5 * angle), kind="stable")]:
-        up = start * math.cos(part) + towards * math.sin(part)
-        along = towards * math.cos(part) - start * math.sin(part)
-        pose = find_heave_balance(vessel, turn_upright(up, along), float(one.position[2]))
-        if _descend_across(pose, highest).energy > highest:
+        # on towards the goal, whose vertical leans that way
+        lean = (pose.rotation @ goal.rotation[2])[:2]
+        lean /= np.linalg.norm(lean)
+        pose = tilt(pose, _STRIDE * np.array([lean[1], -lean[0]]))
+
+        # and down, square to that
+        pose = _descend(pose, lean)
+        rise = 0.5 * FREE * scale * _angle_between(start, pose) ** 2
+        if pose.energy > start.energy + rise:
             return False
-    return True
+    return False
 
 
-def _descend_across(pose: FloatingPose, highest: float) -> FloatingPose:
-    """Descend square to a way along x, by Newton steps, until the energy is below `highest` [J]."""
+def _descend(pose: FloatingPose, axis: NDArray[np.float64]) -> FloatingPose:
+    """Turn about a horizontal axis (2,) alone, by Newton steps, to the bottom of a valley."""
     for _ in range(3):
-        stiffness = tilt_stiffness(pose)[0, 0]
-        if pose.energy <= highest or stiffness <= 0.0:
+        stiffness = axis @ tilt_stiffness(pose) @ axis
+        if stiffness <= 0.0:
             break
-        turn = np.clip(pose.torque[0] / stiffness, -_STRIDE, _STRIDE)
-        pose = tilt(pose, np.array([turn, 0.0]))
+        turn = float(np.clip(axis @ pose.torque / stiffness, -_STRIDE, _STRIDE))
+        pose = tilt(pose, turn * axis)
+        if abs(turn) < 0.01 * _STRIDE:
+            break
     return pose
+
+
+def _angle_between(one: FloatingPose, two: FloatingPose) -> float:
+    """Angle between the verticals of two poses, each seen from the vessel [rad]."""
+    chord = float(np.linalg.norm(one.rotation[2] - two.rotation[2]))
+    return 2.0 * math.asin(min(1.0, 0.5 * chord))

@@ -13,7 +13,7 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
 from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.building import build_vessel
-from buoyancy_mj.statics.distinct_poses import LEAST_RISE, group_poses
+from buoyancy_mj.statics.distinct_poses import group_poses
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
@@ -24,6 +24,9 @@ INDIFFERENT = 1e-3
 """Part of the largest eigenvalue below which an eigenvalue counts as zero.
 
 The period of such a motion is thirty times the shortest."""
+
+_LEVEL = 1e-6
+"""Difference of energy over weight times radius of poses that are level with each other."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -145,7 +148,7 @@ def _choose_nearest(
 ) -> tuple[FloatingPose, int]:
     """Choose the pose nearest to the attitude of a vessel, of those as low as the lowest."""
     lowest = min(pose.energy for pose, _ in found)
-    highest = lowest + LEAST_RISE * vessel.weight * vessel.radius
+    highest = lowest + _LEVEL * vessel.weight * vessel.radius
     level = [(pose, steps) for pose, steps in found if pose.energy <= highest]
     return max(level, key=lambda entry: float(entry[0].rotation[2] @ vessel.rotation[2]))
 

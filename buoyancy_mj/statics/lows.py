@@ -46,24 +46,6 @@ def find_lows(vessel: Vessel) -> list[FloatingPose]:
     return [poses[low] for low in lows[np.sort(first)]]
 
 
-def turn_upright(
-    up: NDArray[np.float64], towards: NDArray[np.float64] | None = None
-) -> NDArray[np.float64]:
-    """Turn a direction of the vessel to the vertical.
-
-    Args:
-        up: the direction in the vessel's axes (3,), a unit vector.
-        towards: another, square to it, that comes to point along x; any if None.
-
-    Returns:
-        The attitude world_from_vessel (3, 3).
-    """
-    if towards is None:
-        towards = np.cross(up, np.eye(3)[np.abs(up).argmin()])
-        towards /= np.linalg.norm(towards)
-    return np.stack([towards, np.cross(up, towards), up])
-
-
 def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.int64]]:
     """A vessel at its draft in attitudes all round (n), and which of them are neighbours (m, 2)."""
     ball = trimesh.creation.icosahedron()
@@ -78,9 +60,16 @@ def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.in
             )
             heights = between["height"][:, 0]
             ups = ups / np.linalg.norm(ups, axis=1)[:, None]
-        for up, height in zip(ups[len(poses) :], heights[len(poses) :], strict=True):
-            rotation = turn_upright(up)
+        new = slice(len(poses), None)
+        for rotation, height in zip(_turn_upright(ups[new]), heights[new], strict=True):
             poses.append(find_heave_balance(vessel, rotation, height, _DRAFT_TOLERANCE))
         heights = np.array([pose.position[2] for pose in poses])
     edges = np.sort(trimesh.geometry.faces_to_edges(faces), axis=1)
     return poses, np.unique(edges, axis=0)
+
+
+def _turn_upright(ups: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Attitudes world_from_vessel (n, 3, 3) that turn directions of a vessel (n, 3) upright."""
+    x = np.cross(ups, np.eye(3)[np.abs(ups).argmin(axis=1)])
+    x /= np.linalg.norm(x, axis=1)[:, None]
+    return np.stack([x, np.cross(ups, x), ups], axis=1)
