@@ -10,8 +10,11 @@ from buoyancy_mj.statics.balance import find_heave_balance
 from buoyancy_mj.statics.floating_pose import FloatingPose
 from buoyancy_mj.statics.vessel import Vessel
 
-_SUBDIVISIONS = 4
-"""How often the icosahedron of attitudes is subdivided: 2562 attitudes, 4 degrees apart."""
+_EVERYWHERE = 3
+"""How often the icosahedron of attitudes is subdivided: 642 attitudes, 9 degrees apart."""
+_NEAR_BALANCE = 6
+"""How often it is where the torque may vanish: 1 degree apart."""
+_MARGIN = 1.0
 _DRAFT_TOLERANCE = 1e-4
 """Part of the volume by which a draft may be off; the energy is off by the square of that."""
 _FLAT = 1e-6
@@ -52,20 +55,28 @@ def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.in
     ups, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
     heights = np.full(len(ups), vessel.position[2])
     poses: list[FloatingPose] = []
-    for finer in range(_SUBDIVISIONS + 1):
+    for level in range(_NEAR_BALANCE + 1):
         # each draft begins at that between its neighbours
-        if finer:
-            ups, faces, between = trimesh.remesh.subdivide(
-                ups, faces, vertex_attributes={"height": heights[:, None]}
-            )
-            heights = between["height"][:, 0]
+        if level:
+            chosen = None if level <= _EVERYWHERE else _find_near_balance(poses, faces)
+            between = np.column_stack([ups, heights])
+            between, faces = trimesh.remesh.subdivide(between, faces, chosen)
+            ups, heights = between[:, :3], between[:, 3]
             ups = ups / np.linalg.norm(ups, axis=1)[:, None]
+
         new = slice(len(poses), None)
         for rotation, height in zip(_turn_upright(ups[new]), heights[new], strict=True):
             poses.append(find_heave_balance(vessel, rotation, height, _DRAFT_TOLERANCE))
         heights = np.array([pose.position[2] for pose in poses])
     edges = np.sort(trimesh.geometry.faces_to_edges(faces), axis=1)
     return poses, np.unique(edges, axis=0)
+
+
+def _find_near_balance(poses: list[FloatingPose], faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Find the triangles of attitudes over which the torque changes by as much as it measures."""
+    torques = np.array([[*pose.torque, 0.0] @ pose.rotation for pose in poses])[faces]
+    changes = np.linalg.norm(torques - np.roll(torques, 1, axis=1), axis=2).max(axis=1)
+    return np.flatnonzero(changes >= _MARGIN*np.linalg.norm(torques, axis=2).min(axis=1))
 
 
 def _turn_upright(ups: NDArray[np.float64]) -> NDArray[np.float64]:
