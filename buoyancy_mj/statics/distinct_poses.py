@@ -23,8 +23,8 @@ def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
     """Group rest poses that differ by heading alone, or by a roll that nothing resists.
 
     Two poses are one if the energy on the way from the higher to the lower stays below that of a
-    turn with a stiffness of `FREE`, or if they are so with others between them: round a log, or all
-    over a ball.
+    turn with a stiffness of `FREE`, or if they are so with others between them that lie no higher:
+    round a log, or all over a ball. A pose that nothing holds counts with that to which it falls.
 
     Args:
         poses: rest poses of one vessel (n).
@@ -34,6 +34,7 @@ def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
     """
     ups = np.array([pose.rotation[2] for pose in poses])
     groups = np.arange(len(poses))
+    lowest = np.array([pose.energy for pose in poses])
 
     # the nearest first, whose way is the shortest
     ones, others = np.triu_indices(len(poses), 1)
@@ -42,30 +43,37 @@ def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
         if cosines[k] < math.cos(_NEARBY):
             break
         i, j = ones[k], others[k]
-        if groups[i] != groups[j] and _is_level_between(poses[i], poses[j]):
+        floor = max(lowest[groups[i]], lowest[groups[j]])
+        if groups[i] != groups[j] and _turns_freely(poses[i], poses[j], floor):
+            lowest[groups[i]] = min(lowest[groups[i]], lowest[groups[j]])
             groups[groups == groups[j]] = groups[i]
     return groups
 
 
-def _is_level_between(one: FloatingPose, two: FloatingPose) -> bool:
-    """Whether a vessel turns freely from the higher of two poses to the lower."""
+def _turns_freely(one: FloatingPose, two: FloatingPose, floor: float) -> bool:
+    """Whether nothing resists a turn from the higher of two poses to the lower.
+
+    Args:
+        one: a rest pose.
+        two: another.
+        floor: energy of the poses that they stand for [J]; the higher of them lies no higher.
+    """
     start, goal = (one, two) if one.energy >= two.energy else (two, one)
-    scale = start.vessel.weight * start.vessel.radius
+    angle = _angle_between(start, goal)
+    free = 0.5 * FREE * start.vessel.weight * start.vessel.radius
     pose = start
-    for _ in range(math.ceil(2.0 * _angle_between(start, goal) / _STRIDE)):
+    for _ in range(math.ceil(2.0 * angle / _STRIDE) + 1):
+        rise = free * _angle_between(start, pose) ** 2
+        if pose.energy > min(start.energy + rise, floor + free * angle**2):
+            return False
         if _angle_between(pose, goal) <= _STRIDE:
             return True
 
-        # on towards the goal, whose vertical leans that way
+        # on towards the goal, whose vertical leans that way, and down square to that
         lean = (pose.rotation @ goal.rotation[2])[:2]
         lean /= np.linalg.norm(lean)
         pose = tilt(pose, _STRIDE * np.array([lean[1], -lean[0]]))
-
-        # and down, square to that
         pose = _descend(pose, lean)
-        rise = 0.5 * FREE * scale * _angle_between(start, pose) ** 2
-        if pose.energy > start.energy + rise:
-            return False
     return False
 
 

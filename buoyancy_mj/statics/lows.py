@@ -1,5 +1,7 @@
 """`find_lows`: attitudes from which every rest pose of a vessel lies downhill."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
@@ -7,6 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from buoyancy_mj.statics.balance import find_heave_balance
+from buoyancy_mj.statics.distinct_poses import FREE
 from buoyancy_mj.statics.floating_pose import FloatingPose
 from buoyancy_mj.statics.vessel import Vessel
 
@@ -14,11 +17,8 @@ _EVERYWHERE = 3
 """How often the icosahedron of attitudes is subdivided: 642 attitudes, 9 degrees apart."""
 _NEAR_BALANCE = 6
 """How often it is where the torque may vanish: 1 degree apart."""
-_MARGIN = 1.0
 _DRAFT_TOLERANCE = 1e-4
 """Part of the volume by which a draft may be off; the energy is off by the square of that."""
-_FLAT = 1e-6
-"""Difference of energy over weight times radius of attitudes side by side that lie level."""
 
 
 def find_lows(vessel: Vessel) -> list[FloatingPose]:
@@ -41,7 +41,10 @@ def find_lows(vessel: Vessel) -> list[FloatingPose]:
     lows = np.flatnonzero(energies <= around)
 
     # the lowest of each plain
-    one, other = edges[np.abs(np.diff(energies[edges]))[:, 0] <= _FLAT].T
+    ups = np.array([pose.rotation[2] for pose in poses])
+    lengths = np.linalg.norm(ups[edges[:, 0]] - ups[edges[:, 1]], axis=1)
+    rises = np.abs(energies[edges[:, 0]] - energies[edges[:, 1]])
+    one, other = edges[rises <= 0.5 * FREE * lengths**2].T
     level = coo_array((np.ones(len(one)), (one, other)), shape=(len(poses), len(poses)))
     _, plains = connected_components(level, directed=False)
     lows = lows[np.argsort(energies[lows], kind="stable")]
@@ -72,11 +75,21 @@ def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.in
     return poses, np.unique(edges, axis=0)
 
 
-def _find_near_balance(poses: list[FloatingPose], faces: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Find the triangles of attitudes over which the torque changes by as much as it measures."""
+def _find_near_balance(poses: Sequence[FloatingPose], faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Find the triangles of attitudes over which the torque changes by as much as it measures.
+
+    Where it is as small as that of a turn that nothing resists, there is nothing to find.
+    """
+    scale = poses[0].vessel.weight * poses[0].vessel.radius
+    corners = np.array([pose.rotation[2] for pose in poses])[faces]
+    lengths = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+
+    # in the axes of the vessel
     torques = np.array([[*pose.torque, 0.0] @ pose.rotation for pose in poses])[faces]
     changes = np.linalg.norm(torques - np.roll(torques, 1, axis=1), axis=2).max(axis=1)
-    return np.flatnonzero(changes >= _MARGIN*np.linalg.norm(torques, axis=2).min(axis=1))
+    sizes = np.linalg.norm(torques, axis=2)
+    resists = sizes.max(axis=1) > FREE * scale * lengths
+    return np.flatnonzero(resists & (changes >= sizes.min(axis=1)))
 
 
 def _turn_upright(ups: NDArray[np.float64]) -> NDArray[np.float64]:
