@@ -23,9 +23,10 @@ from buoyancy_mj.cli.flags import (
 )
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.frames import Frame, Summary
+from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.summary import Summary
 
 
 @command()

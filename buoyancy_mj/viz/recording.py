@@ -12,8 +12,9 @@ import numpy as np
 import rerun as rr
 
 from buoyancy_mj.errors import BuoyancyWarning, RecordingError
-from buoyancy_mj.scenes.frames import Frame, Summary
+from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.viz import plots
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
