@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.hulls.bodies import find_moving_bodies
+from buoyancy_mj.hulls.bodies import find_mocap_bodies, find_moving_bodies
 
 _PLANE = int(mujoco.mjtGeom.mjGEOM_PLANE)
 _LEVEL_COSINE = 0.95
@@ -60,8 +60,7 @@ def _find_boxes(
     model: mujoco.MjModel, data: mujoco.MjData
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Lowest and highest corners (m, 3) [m] of what bounds each floor, along the world's axes."""
-    carrier_is_mocap = model.body_mocapid[model.body_weldid] >= 0
-    fixed = ~(find_moving_bodies(model) | carrier_is_mocap)[model.geom_bodyid]
+    fixed = ~(find_moving_bodies(model) | find_mocap_bodies(model))[model.geom_bodyid]
     solid = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
     lows, highs = [np.zeros((0, 3))], [np.zeros((0, 3))]
     for geom in np.flatnonzero(fixed & solid).tolist():
