@@ -2,6 +2,7 @@
 
 import contextlib
 import warnings
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,10 +12,10 @@ import numpy as np
 from buoyancy_mj.engine.c_functions import pop_error
 from buoyancy_mj.engine.checks import skips_passive
 from buoyancy_mj.engine.plugin import add_water
-from buoyancy_mj.errors import BuoyancyWarning, EngineError, SceneError
+from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, SceneError
 from buoyancy_mj.loads.coefficients import add_coefficients
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.parts import Afloat, Part, find_afloat
+from buoyancy_mj.scenes.parts import Afloat, Part, choose_free, find_afloat
 from buoyancy_mj.scenes.scene import INTEGRATORS, Scene
 from buoyancy_mj.scenes.scene_vehicle import ENVIRONMENT, EQUILIBRIUM, SceneVehicle
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec, read_spec
@@ -66,19 +67,22 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     # the model, and the masses of its vehicles
     model = compile_spec(spec, _path_of(scene))
     afloat = find_afloat(model, parts, scene.selection)
-    for part in parts:
-        _set_mass(model, part, [group for group in afloat if group.part is part])
+    set_afloat = [
+        choose_free(model, [group for group in afloat if group.part is part]) for part in parts
+    ]
+    for part, groups in zip(parts, set_afloat, strict=True):
+        _set_mass(model, part, groups)
     try:
         data = mujoco.MjData(model)
     except mujoco.FatalError as error:
         raise pop_error() or error from None
 
     # the start
-    for part in parts:
+    for part, groups in zip(parts, set_afloat, strict=True):
         place_vehicle(model, data, part)
-    for part in parts:
         if part.entry.start.at == EQUILIBRIUM:
-            settle_vehicle(model, data, scene, part.bodies)
+            bodies = np.concatenate([group.bodies for group in groups])
+            settle_vehicle(model, data, scene, bodies.tolist())
     return Assembly(model, data, afloat)
 
 
@@ -105,6 +109,11 @@ def _attach_entry(spec: mujoco.MjSpec, scene: Scene, entry: SceneVehicle) -> Par
     _share_options(spec, own, entry, is_first=is_first)
     bodies, actuators = len(spec.bodies), len(spec.actuators)
     path = catalog.model_path(entry.model, scene.folder)
+    if own.compiler.settotalmass > 0.0 and entry.mass is None:
+        raise ModelError(
+            f"'{path}' sets <compiler settotalmass>, which MuJoCo drops where it joins models; "
+            f"give vehicle '{entry.name}' its mass in the scene instead"
+        )
     attach_spec(spec, _path_of(scene), own, path, f"{entry.name}/")
     return Part(
         entry,
@@ -154,8 +163,8 @@ def _path_of(scene: Scene) -> Path:
     return scene.folder / (f"{scene.name}.toml" if scene.name else scene.title)
 
 
-def _set_mass(model: mujoco.MjModel, part: Part, afloat: list[Afloat]) -> None:
-    """Give what floats of a part the mass and the centre of gravity that the scene asks for."""
+def _set_mass(model: mujoco.MjModel, part: Part, afloat: Sequence[Afloat]) -> None:
+    """Give what is set afloat of a part the mass and centre of gravity that the scene asks for."""
     mass, shift = part.entry.mass, part.entry.cog_shift
     if mass is not None:
         bodies = np.concatenate([group.bodies for group in afloat])

@@ -37,6 +37,10 @@ class Floors:
         reach = _reach(model, data, bodies)
         self._ceiling = np.where(above, self._bottom - reach, -np.inf)
 
+    def is_low(self, centres: NDArray[np.float64]) -> bool:
+        """Whether any body, by its centre of mass (n, 3) [m], is so low that it may have fallen."""
+        return bool((centres[:, 2] < self._ceiling).any())
+
     def find_fallen(self, centres: NDArray[np.float64]) -> int | None:
         """Which body has fallen through the bottom, by its place among those watched, or None.
 

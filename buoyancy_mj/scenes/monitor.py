@@ -35,6 +35,8 @@ class Monitor:
         self.first_contact: float | None = None
         """Time of the first of them [s]."""
         self._water = water
+        amplitude, kx, ky, *_ = water.rows.T
+        self._curvature = float(np.abs(amplitude) @ (kx * kx + ky * ky))
         self._vehicle = vehicle
         self._heights: list[tuple[float, float]] = []
 
@@ -52,12 +54,25 @@ class Monitor:
 
     def add_poses(self, poses: Poses, time: float) -> None:
         """Keep the draft and the height of the centre of gravity in poses at a time [s]."""
-        points = [_move(corners, poses, body) for body, corners in self._corners]
-        self.draft = float(self._water.depth(np.concatenate(points), time).max())
+        corners = np.concatenate([_move(points, poses, body) for body, points in self._corners])
+        self.draft = float(self._water.depth(self._choose_deep(corners, time), time).max())
         self.peak_draft = max(self.peak_draft, self.draft)
         vehicle = self._vehicle
         height = vehicle.masses @ poses.xipos[vehicle.bodies, 2] / vehicle.mass
         self._heights.append((time, float(height)))
+
+    def _choose_deep(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
+        """Those of points (n, 3) [m] that can be deepest at a time [s].
+
+        Seen from the lowest point, the surface rises by its slope there, and by no more than its
+        greatest curvature beyond that. What lies higher than this is less deep.
+        """
+        lowest = points[np.argmin(points[:, 2])]
+        apart = points - lowest
+        x, y, z = apart.T
+        along, across = self._water.slope(lowest[0], lowest[1], time)
+        rise = along * x + across * y + 0.5 * self._curvature * (x * x + y * y)
+        return np.asarray(points[z <= rise + 1e-9])
 
     def add_contacts(self, data: mujoco.MjData, time: float) -> None:
         """Count the step that ended at a time [s] if the vehicle touched something fixed in it."""

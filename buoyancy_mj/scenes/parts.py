@@ -64,7 +64,9 @@ def find_afloat(
         for verdict in judge_geoms(model, selection)
         if verdict.displaces
     }
-    groups = [bodies for bodies in group_floating_bodies(model) if not wet.isdisjoint(bodies)]
+    groups = [
+        bodies for bodies in group_floating_bodies(model) if not wet.isdisjoint(bodies.tolist())
+    ]
     afloat: list[Afloat] = []
     for part in parts:
         own = [bodies for bodies in groups if bodies[0] in part.bodies]
@@ -76,3 +78,13 @@ def find_afloat(
             name = part.entry.name if len(own) == 1 else body_name(model, int(bodies[0]))
             afloat.append(Afloat(str(name), part, bodies))
     return tuple(afloat)
+
+
+def choose_free(model: mujoco.MjModel, afloat: Sequence[Afloat]) -> list[Afloat]:
+    """Those that a scene's start and masses are for: what floats freely; all where nothing does.
+
+    A crane on a pier moves too, but is not what the scene sets afloat.
+    """
+    free_bodies = model.jnt_bodyid[model.jnt_type == mujoco.mjtJoint.mjJNT_FREE]
+    free = [group for group in afloat if np.isin(group.bodies, free_bodies).any()]
+    return free or list(afloat)

@@ -16,7 +16,7 @@ from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.divergence import Limits
-from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles
+from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles, warn_of_contact
 from buoyancy_mj.scenes.frames import Frame, take_only
 from buoyancy_mj.scenes.monitor import Monitor
 from buoyancy_mj.scenes.observer import Observer
@@ -64,6 +64,14 @@ class Simulation(ReadOnly):
         self.vehicles = build_vehicles(self.model, self.buoyancy, afloat)
         """What floats of the scene's vehicles, by name; surroundings are none of them."""
 
+        # the poses at the start
+        self._frame_data = mujoco.MjData(self.model)
+        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        self._copy_state()
+        mujoco.mj_fwdPosition(self.model, self._frame_data)
+        warn_of_contact(self.model, self._frame_data, self.vehicles)
+        self._limits = Limits(scene, self.model, self._frame_data)
+
         # what a run leaves
         self._monitors = {
             name: Monitor(self.model, vehicle, scene.water)
@@ -73,10 +81,7 @@ class Simulation(ReadOnly):
             name: Observer(self.model, vehicle, self._monitors[name], scene.water)
             for name, vehicle in self.vehicles.items()
         }
-        self._limits = Limits(scene, self.model, self.data)
         self._wall_time = 0.0
-        self._frame_data = mujoco.MjData(self.model)
-        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
 
         # compile what a fresh installation has not compiled, before the clock runs
         mujoco.mj_forward(self.model, self._frame_data)
@@ -208,8 +213,7 @@ class Simulation(ReadOnly):
         """The present, on other data: mj_forward on the running data would disturb the run."""
         # poses and loads at exactly this time
         data = self._frame_data
-        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        mujoco.mj_setState(self.model, data, self._state, _STATE)
+        self._copy_state()
         with self._lend_water():
             mujoco.mj_forward(self.model, data)
         self._limits.check_data(data)
@@ -225,3 +229,8 @@ class Simulation(ReadOnly):
                 name: observer.observe(data, loads) for name, observer in self._observers.items()
             },
         )
+
+    def _copy_state(self) -> None:
+        """Copy the state of the run to the data of frames."""
+        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
+        mujoco.mj_setState(self.model, self._frame_data, self._state, _STATE)
