@@ -634,8 +634,8 @@ def run_of(folder, *settings):
                 "start.position.2=-1",
                 "damping=false",
             ],
-            "the simulation diverged at 0.01 s: body 'box' has gone through the bottom, to z = -10 m; "
-            "try a smaller timestep",
+            "the simulation diverged at 0.01 s: body 'box' has gone through the bottom, "
+            "to z = -9.998 m; try a smaller timestep (now 0.01 s)",
         ),
     ],
 )

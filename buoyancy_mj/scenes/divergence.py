@@ -43,8 +43,8 @@ class Limits:
         self._floors = Floors(model, data, self._bodies)
         self._last: tuple[float, NDArray[np.float64]] | None = None
 
-    def check_data(self, data: mujoco.MjData) -> None:
-        """Check data after a step or mj_forward.
+    def check_data(self, data: mujoco.MjData, time: float) -> None:
+        """Check data after a step or mj_forward, whose poses are those at a time [s].
 
         Raises:
             DivergenceError: a limit is passed; the error names the body and the quantity.
@@ -56,7 +56,7 @@ class Limits:
             return
         arms = centres - data.subtree_com[self._model.body_rootid[bodies]]
         velocities = data.cvel[bodies, 3:] + np.cross(data.cvel[bodies, :3], arms)
-        self._check(centres, velocities, float(data.time))
+        self._check(centres, velocities, time)
 
     def _is_calm(self, centres: NDArray[np.float64], data: mujoco.MjData) -> bool:
         """Whether all is far from all limits; a quick look that most steps need no more than."""

@@ -148,12 +148,13 @@ class Simulation(ReadOnly):
         """
         with self._lend_water():
             mujoco.mj_step(self.model, self.data)
-        self._limits.check_data(self.data)
 
         # a step leaves the poses of its beginning
         now = float(self.data.time)
+        before = now - self.model.opt.timestep
+        self._limits.check_data(self.data, before)
         for monitor in self._monitors.values():
-            monitor.add_poses(poses_of(self.data), now - self.model.opt.timestep)
+            monitor.add_poses(poses_of(self.data), before)
             monitor.add_contacts(self.data, now)
 
     def replay(self, trajectory: Trajectory, wall_time: float) -> None:
@@ -216,8 +217,8 @@ class Simulation(ReadOnly):
         self._copy_state()
         with self._lend_water():
             mujoco.mj_forward(self.model, data)
-        self._limits.check_data(data)
         now = float(data.time)
+        self._limits.check_data(data, now)
         loads = self.buoyancy.loads(data)
         for monitor in self._monitors.values():
             monitor.add_poses(poses_of(data), now)
