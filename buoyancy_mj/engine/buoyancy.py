@@ -11,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine import callbacks, passes
-from buoyancy_mj.engine.checks import check_actuation, check_sleep, check_waves
+from buoyancy_mj.engine.checks import (
+    check_actuation,
+    check_sleep,
+    check_waves,
+    warn_of_no_volume,
+)
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.load_model import build_load_model
 from buoyancy_mj.errors import EngineError
@@ -95,6 +100,7 @@ class Buoyancy(ReadOnly):
         self.packed = self.settings.method.pack(hulls, self.water)
         """The hulls as the method keeps them, ready to be submerged again and again."""
         check_waves(model, self.water, self.hulls)
+        warn_of_no_volume(model)
 
         # the loads
         self.added_mass = resolve_added_mass(

@@ -83,7 +83,10 @@ def run_batch(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
         reason = failures.get(i, "") or _divergence(simulation, float(recorded[_TIME][i, -1, 0]))
         if not reason:
             trajectory = Trajectory(*(recorded[name][i] for name in Trajectory._fields))
-            simulation.replay(trajectory, wall_time)
+            try:
+                simulation.replay(trajectory, wall_time)
+            except DivergenceError as error:
+                reason = str(error)
         reasons.append(reason)
     return reasons
 
