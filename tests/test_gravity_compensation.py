@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
+from typer.testing import CliRunner
 
 from buoyancy_mj import (
     Buoyancy,
@@ -20,6 +21,7 @@ from buoyancy_mj import (
     hydrostatics,
     righting_arm,
 )
+from buoyancy_mj.cli import app
 from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.inspection.json_report import to_json
@@ -241,6 +243,16 @@ def test_ballast_makes_it_neutral_by_the_engine():
     assert result.hydrostatics.mass == pytest.approx(after.mass) == pytest.approx(16.0)
     assert result.hydrostatics.mass_matrix == pytest.approx(after.mass_matrix, abs=1e-9)
     assert pytest.approx(after.BG) == result.hydrostatics.BG
+
+
+def test_the_command_tells_what_is_carried_beside_the_ballast():
+    box = ["--box", "-.1", "-.05", "-.08", ".1", ".05", "0"]
+    result = CliRunner().invoke(app, ["ballast", str(AUV), "--reserve", "0", *box])
+    assert result.stdout.splitlines() == [
+        "ballast_box: 16 kg of ballast at (0, 0, -0.08) m",
+        "16 kg added, 24 kg in all, of which gravity compensation carries 8 kg; under water: "
+        "BG 0.08 m, GM 0.08 m, reserve 0 kg",
+    ]
 
 
 @given(st.lists(st.floats(-0.3, 0.9), min_size=3, max_size=3))
