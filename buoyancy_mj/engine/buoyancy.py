@@ -18,6 +18,7 @@ from buoyancy_mj.engine.checks import (
     check_data,
     check_sleep,
     check_waves,
+    warn_of_no_volume,
 )
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.forks import make_lock
@@ -92,6 +93,7 @@ class Buoyancy(ReadOnly):
         self._chosen = bodies
         self._load_model = build_load_model(model, self.settings, bodies)
         check_waves(model, self.water, self.hulls)
+        warn_of_no_volume(model)
 
         # the bodies
         self.bodies = np.unique(self._load_model.arrays.owners)

@@ -85,7 +85,10 @@ def run_batch(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     for i, simulation in enumerate(simulations):
         if i not in stepping.failures:
             trajectory = Trajectory(*(values[i] for values in stepping.trajectories))
-            simulation.replay(trajectory, wall_time)
+            try:
+                simulation.replay(trajectory, wall_time)
+            except DivergenceError as error:
+                stepping.failures[i] = str(error)
     return [stepping.failures.get(i, "") for i in range(len(simulations))]
 
 

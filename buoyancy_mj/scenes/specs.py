@@ -56,17 +56,20 @@ def compile_spec(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
         raise ModelError(f"MuJoCo cannot compile '{path}': {message}{mend}") from error
 
 
-def attach_spec(spec: mujoco.MjSpec, path: Path, other: Path, prefix: str) -> None:
-    """Attach the file `other` to the world of a spec, with `prefix` before all its names.
+def attach_spec(
+    spec: mujoco.MjSpec, path: Path, other: mujoco.MjSpec, other_path: Path, prefix: str
+) -> None:
+    """Attach the spec `other` to the world of a spec, with `prefix` before all its names.
 
     Raises:
-        ModelError: MuJoCo cannot read `other`, or cannot join it to `path`, the file of the spec.
+        ModelError: MuJoCo cannot join them; the paths name them in the message.
     """
-    other_spec = read_spec(other)
     try:
-        spec.attach(other_spec, prefix=prefix, frame=spec.worldbody.add_frame())
+        spec.attach(other, prefix=prefix, frame=spec.worldbody.add_frame())
     except ValueError as error:
-        raise ModelError(f"MuJoCo cannot join '{other}' to '{path}': {_one_line(error)}") from error
+        raise ModelError(
+            f"MuJoCo cannot join '{other_path}' to '{path}': {_one_line(error)}"
+        ) from error
 
 
 def _one_line(error: Exception) -> str:

@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.distinct_poses import group_poses
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
