@@ -84,8 +84,8 @@ def test_a_scene_is_read_into_what_it_says(folder):
         ('geoms=["hull*", "group:2"]', lambda s: s.selection.geoms == ("hull*", "group:2")),
         ("vehicle=sauvc_auv", lambda s: s.vehicle == "sauvc_auv"),
         ("vehicle=sauvc_auv", lambda s: s.title == "sauvc_auv in the scene scene"),
-        ("vehicle=sauvc_auv", lambda s: s.name == "sauvc_auv"),
-        ("vehicle=box.xml", lambda s: (s.title, s.name) == ("A box", "scene")),
+        ("vehicle=sauvc_auv", lambda s: s.stem == "sauvc_auv"),
+        ("vehicle=box.xml", lambda s: (s.title, s.stem) == ("A box", "scene")),
     ],
 )
 def test_any_field_can_be_set(folder, setting, look):
