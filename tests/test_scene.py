@@ -661,6 +661,32 @@ def test_who_never_was_over_the_floor_or_left_it_by_its_edge_may_sink(folder, se
     assert summary.peak_draft > 3.5 or summary.simulated_time == pytest.approx(0.1)
 
 
+def test_a_body_that_can_touch_nothing_is_told_why_it_went_through_the_bottom(folder):
+    text = BOX.format(joint=FREE, more="", rest="").replace(
+        'type="box"', 'type="box" contype="0" conaffinity="0"'
+    )
+    (folder / "box.xml").write_text(text)
+    settings = ["environment=floor.xml", "mass=40", "start.position.2=-2", "duration=9"]
+    with pytest.raises(
+        DivergenceError,
+        match=r"^the simulation diverged at .* s: body 'box' has gone through the bottom, to z = "
+        r"-3\.4.* m; none of its geoms can touch it, so give one contype and conaffinity of 1$",
+    ):
+        run_of(folder, *settings)
+
+
+def test_a_part_that_hangs_through_the_bottom_does_not_end_a_run(folder):
+    # the propeller touches nothing, and turns below the floor on which the hull lies
+    propeller = """<body name="propeller" pos="0 0 -.6"><joint axis="0 0 1"/>
+        <geom size=".05" mass=".1" contype="0" conaffinity="0"/></body>"""
+    (folder / "box.xml").write_text(BOX.format(joint=FREE, more=propeller, rest=""))
+    summary = run_of(
+        folder, "environment=floor.xml", "mass=40", "start.position.2=-2.8", "duration=2"
+    )
+    assert summary.contact_steps > 10
+    assert summary.final_draft > 3.4
+
+
 def test_the_limits_hold_for_what_floats_in_the_environment_too(folder):
     (folder / "pool.xml").write_text(
         """<mujoco><worldbody><body name="buoy" pos="3 0 0"><freejoint/><geom size=".1"/></body>
