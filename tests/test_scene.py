@@ -605,6 +605,26 @@ def test_a_steep_simulation_that_runs_away_is_reported(folder):
         list(simulation.frames())
 
 
+@pytest.mark.parametrize("scene", ["auv_sea_state_2", "hourglass_drop_waves", "auv_drop_still"])
+def test_the_draft_is_the_depth_of_the_deepest_of_all_vertices(scene):
+    simulation = Simulation(read_scene(catalog.scenes()[scene]))
+    data, water = simulation.data, simulation.scene.water
+    rng = np.random.default_rng(0)
+    for time in rng.uniform(0.0, 60.0, 8):
+        data.time = time
+        data.qpos[:7] = [*rng.uniform(-9.0, 9.0, 2), rng.uniform(-1.0, 0.5), *rng.normal(size=4)]
+        frame = simulation._frame()
+        depths = [
+            water.depth(
+                hull.mesh.vertices @ frame.data.geom_xmat[hull.geom].reshape(3, 3).T
+                + frame.data.geom_xpos[hull.geom],
+                time,
+            ).max()
+            for hull in simulation.hulls
+        ]
+        assert frame.draft == pytest.approx(max(depths), abs=1e-9)
+
+
 def run_of(folder, *settings):
     (folder / "floor.xml").write_text(
         """<mujoco><worldbody>
