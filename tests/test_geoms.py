@@ -6,7 +6,16 @@ import pytest
 import shapely
 import shapely.affinity
 
-from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Selection, Water
+from buoyancy_mj import (
+    Buoyancy,
+    BuoyancyWarning,
+    MeshError,
+    ModelError,
+    RegularWave,
+    Selection,
+    Water,
+    add_water,
+)
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.meshes import shapes
 from tests.naive import two_cones
@@ -251,3 +260,43 @@ def test_a_mesh_displaces_as_it_is_drawn_and_not_as_its_convex_hull():
     glass = two_cones(0.2, 0.3, sections=24)
     model = mesh_model(glass.vertices, glass.faces)
     assert find_hulls(model)[0].mesh.volume == pytest.approx(glass.volume, rel=1e-6)
+
+
+# what has no volume -------------------------------------------------------------------------------
+
+SOFT = """<mujoco><worldbody>
+<body name="boat"><freejoint/><geom type="box" size=".2 .1 .1" mass="8"/>
+<geom name="ring" type="sdf" mesh="torus" pos="0 0 1" mass="1"><plugin instance="t"/></geom></body>
+<body name="anchor" pos="0 0 2"><flexcomp name="net" type="grid" count="3 3 1" spacing=".1 .1 .1"
+  mass=".1" dim="2" radius=".01"><edge equality="true"/></flexcomp></body></worldbody>
+<extension><plugin plugin="mujoco.sdf.torus"><instance name="t"/></plugin></extension>
+<asset><mesh name="torus"><plugin instance="t"/></mesh></asset></mujoco>"""
+
+
+def test_flexes_and_distance_fields_that_displace_nothing_are_named_once():
+    model = mujoco.MjModel.from_xml_string(SOFT)
+    with pytest.warns(BuoyancyWarning) as told:
+        Buoyancy(model)
+    assert [str(entry.message) for entry in told] == [
+        "flex 'net', sdf 'ring' displace no water: only geoms of the types mesh, box, sphere, "
+        "ellipsoid, capsule and cylinder do"
+    ]
+
+
+def test_a_skin_that_displaces_nothing_is_named_once_for_all_data_of_a_model_with_water():
+    spec = mujoco.MjSpec.from_string(
+        """<mujoco><worldbody><body name="diver"><freejoint/><geom size=".2" mass="8"/></body>
+        </worldbody><deformable><skin name="suit" vertex="0 0 0 1 0 0 0 1 0" face="0 1 2">
+        <bone body="diver" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2"
+        vertweight="1 1 1"/></skin></deformable></mujoco>"""
+    )
+    add_water(spec)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        model = spec.compile()
+        for _ in range(3):
+            mujoco.MjData(model)
+    assert [str(entry.message) for entry in told] == [
+        "skin 'suit' displaces no water: only geoms of the types mesh, box, sphere, ellipsoid, "
+        "capsule and cylinder do"
+    ]

@@ -84,8 +84,8 @@ def test_a_scene_is_read_into_what_it_says(folder):
         ('geoms=["hull*", "group:2"]', lambda s: s.selection.geoms == ("hull*", "group:2")),
         ("vehicle=sauvc_auv", lambda s: s.vehicle == "sauvc_auv"),
         ("vehicle=sauvc_auv", lambda s: s.title == "sauvc_auv in the scene scene"),
-        ("vehicle=sauvc_auv", lambda s: s.name == "sauvc_auv"),
-        ("vehicle=box.xml", lambda s: (s.title, s.name) == ("A box", "scene")),
+        ("vehicle=sauvc_auv", lambda s: s.stem == "sauvc_auv"),
+        ("vehicle=box.xml", lambda s: (s.title, s.stem) == ("A box", "scene")),
     ],
 )
 def test_any_field_can_be_set(folder, setting, look):
@@ -605,6 +605,26 @@ def test_a_steep_simulation_that_runs_away_is_reported(folder):
         list(simulation.frames())
 
 
+@pytest.mark.parametrize("scene", ["auv_sea_state_2", "hourglass_drop_waves", "auv_drop_still"])
+def test_the_draft_is_the_depth_of_the_deepest_of_all_vertices(scene):
+    simulation = Simulation(read_scene(catalog.scenes()[scene]))
+    data, water = simulation.data, simulation.scene.water
+    rng = np.random.default_rng(0)
+    for time in rng.uniform(0.0, 60.0, 8):
+        data.time = time
+        data.qpos[:7] = [*rng.uniform(-9.0, 9.0, 2), rng.uniform(-1.0, 0.5), *rng.normal(size=4)]
+        frame = simulation._frame()
+        depths = [
+            water.depth(
+                hull.mesh.vertices @ frame.data.geom_xmat[hull.geom].reshape(3, 3).T
+                + frame.data.geom_xpos[hull.geom],
+                time,
+            ).max()
+            for hull in simulation.hulls
+        ]
+        assert frame.draft == pytest.approx(max(depths), abs=1e-9)
+
+
 def run_of(folder, *settings):
     (folder / "floor.xml").write_text(
         """<mujoco><worldbody>
@@ -659,6 +679,32 @@ def test_speeds_and_places_beyond_reason_end_a_run(folder, settings, message):
 def test_who_never_was_over_the_floor_or_left_it_by_its_edge_may_sink(folder, settings):
     summary = run_of(folder, "environment=floor.xml", "duration=3", "damping=false", *settings)
     assert summary.peak_draft > 3.5 or summary.simulated_time == pytest.approx(0.1)
+
+
+def test_a_body_that_can_touch_nothing_is_told_why_it_went_through_the_bottom(folder):
+    text = BOX.format(joint=FREE, more="", rest="").replace(
+        'type="box"', 'type="box" contype="0" conaffinity="0"'
+    )
+    (folder / "box.xml").write_text(text)
+    settings = ["environment=floor.xml", "mass=40", "start.position.2=-2", "duration=9"]
+    with pytest.raises(
+        DivergenceError,
+        match=r"^the simulation diverged at .* s: body 'box' has gone through the bottom, to z = "
+        r"-3\.4.* m; none of its geoms can touch it, so give one contype and conaffinity of 1$",
+    ):
+        run_of(folder, *settings)
+
+
+def test_a_part_that_hangs_through_the_bottom_does_not_end_a_run(folder):
+    # the propeller touches nothing, and turns below the floor on which the hull lies
+    propeller = """<body name="propeller" pos="0 0 -.6"><joint axis="0 0 1"/>
+        <geom size=".05" mass=".1" contype="0" conaffinity="0"/></body>"""
+    (folder / "box.xml").write_text(BOX.format(joint=FREE, more=propeller, rest=""))
+    summary = run_of(
+        folder, "environment=floor.xml", "mass=40", "start.position.2=-2.8", "duration=2"
+    )
+    assert summary.contact_steps > 10
+    assert summary.final_draft > 3.4
 
 
 def test_the_limits_hold_for_what_floats_in_the_environment_too(folder):

@@ -67,7 +67,7 @@ def run(
         "preparing (the first run after an installation compiles, which takes some seconds)"
     ):
         simulation = Simulation(read_scene(path, settings), through=through)
-    target = None if no_record else record or Path("recordings") / f"{simulation.scene.name}.rrd"
+    target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
     recording = _run_to_end(simulation, target, live=live)
 
     # its summary

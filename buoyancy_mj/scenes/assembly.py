@@ -158,7 +158,7 @@ def _path_of(scene: Scene) -> Path:
     """The file that messages about the joined model name."""
     if scene.vehicle is not None:
         return catalog.model_path(scene.vehicle, scene.folder)
-    return scene.folder / (f"{scene.name}.toml" if scene.name else scene.title)
+    return scene.folder / (f"{scene.stem}.toml" if scene.stem else scene.title)
 
 
 def _set_mass(model: mujoco.MjModel, part: Part, afloat: Sequence[Afloat]) -> None:

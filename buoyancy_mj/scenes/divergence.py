@@ -95,17 +95,18 @@ class Limits:
             )
         fallen = self._floors.find_fallen(centres)
         if fallen is not None:
-            self._refuse(
-                fallen,
-                time,
-                f"has gone through the bottom, to z = {centres[fallen, 2]:.4g} m",
-            )
+            mend = ""
+            if not _can_touch(self._model, int(self._bodies[fallen])):
+                mend = "none of its geoms can touch it, so give one contype and conaffinity of 1"
+            place = f"{centres[fallen, 2]:.4g} m"
+            self._refuse(fallen, time, f"has gone through the bottom, to z = {place}", mend)
 
-    def _refuse(self, i: int, time: float, what: str) -> None:
+    def _refuse(self, i: int, time: float, what: str, mend: str = "") -> None:
         """Raise the error that the i-th moving body has left all reason."""
         name = body_name(self._model, int(self._bodies[i]))
         raise DivergenceError(
-            f"the simulation diverged at {time:.4g} s: body '{name}' {what}; {_mend(self._scene)}"
+            f"the simulation diverged at {time:.4g} s: body '{name}' {what}; "
+            f"{mend or _mend(self._scene)}"
         )
 
 
@@ -131,6 +132,12 @@ def describe_divergence(
         f"the simulation diverged at {time:.4g} s: {subject} is not a finite, sensible number; "
         f"{_mend(scene)}"
     )
+
+
+def _can_touch(model: mujoco.MjModel, body: int) -> bool:
+    """Whether any geom that moves with a body takes part in contacts."""
+    own = model.body_treeid[model.geom_bodyid] == model.body_treeid[body]
+    return bool((model.geom_contype[own] | model.geom_conaffinity[own]).any())
 
 
 def _mend(scene: Scene) -> str:

@@ -1,6 +1,7 @@
 """`Vehicle`: what floats by itself in a scene, with its hulls and what it weighs and displaces."""
 
 import dataclasses
+import functools
 import warnings
 from collections.abc import Mapping, Sequence
 
@@ -43,7 +44,7 @@ class Vehicle:
         """Index of its root body."""
         return int(self.bodies[0])
 
-    @property
+    @functools.cached_property
     def mass(self) -> float:
         """Mass of all its bodies [kg]."""
         return float(self.masses.sum())

@@ -4,7 +4,11 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.hulls.bodies import find_mocap_bodies, find_moving_bodies
+from buoyancy_mj.hulls.bodies import (
+    find_mocap_bodies,
+    find_moving_bodies,
+    group_floating_bodies,
+)
 
 _PLANE = int(mujoco.mjtGeom.mjGEOM_PLANE)
 _LEVEL_COSINE = 0.95
@@ -14,45 +18,49 @@ _LEVEL_COSINE = 0.95
 class Floors:
     """What a scene has under its bodies: level planes, and all that is fixed and can be touched.
 
-    A body has fallen through if something lay under it at the start, and now it lies as a whole
-    below the lowest point of all floors while one of them is over it. A body that went over an edge
-    has not.
+    Bodies that float together have fallen through if something lay under one of them at the start,
+    and now they lie as a whole below the lowest point of all floors while one of them is over them.
+    Who went over an edge has not.
 
     Args:
         model: the model of the scene.
         data: its poses at the start, after mj_kinematics.
-        bodies: indices of the bodies to watch (n,).
+        bodies: indices of the bodies to watch (n,), all that can move.
     """
 
     def __init__(
         self, model: mujoco.MjModel, data: mujoco.MjData, bodies: NDArray[np.int64]
     ) -> None:
         self._low, self._high = _find_boxes(model, data)
-        self._bottom = float(np.min(self._low[:, 2], initial=np.inf))
+        bottom = float(np.min(self._low[:, 2], initial=np.inf))
+        self._ceiling = bottom - _reach(model, data, bodies)
+        groups = [np.flatnonzero(np.isin(bodies, each)) for each in group_floating_bodies(model)]
         centres = data.xipos[bodies]
-        above = [
-            bool((self._is_over(centre) & (self._low[:, 2] < centre[2])).any())
-            for centre in centres
+        self._watched = [
+            group for group in groups if any(self._is_above(centre) for centre in centres[group])
         ]
-        reach = _reach(model, data, bodies)
-        self._ceiling = np.where(above, self._bottom - reach, -np.inf)
 
     def is_low(self, centres: NDArray[np.float64]) -> bool:
         """Whether any body, by its centre of mass (n, 3) [m], is so low that it may have fallen."""
-        return bool((centres[:, 2] < self._ceiling).any())
+        return bool(self._watched) and bool((centres[:, 2] < self._ceiling).any())
 
     def find_fallen(self, centres: NDArray[np.float64]) -> int | None:
-        """Which body has fallen through the bottom, by its place among those watched, or None.
+        """The first of bodies that have fallen through, by its place among those watched, or None.
 
         Args:
             centres: centres of mass of the bodies (n, 3) [m].
         """
-        for i in np.flatnonzero(centres[:, 2] < self._ceiling).tolist():
-            if self._is_over(centres[i]).any():
-                return int(i)
-            # it went over an edge, and may go on
-            self._ceiling[i] = -np.inf
+        is_low = centres[:, 2] < self._ceiling
+        for group in [group for group in self._watched if is_low[group].all()]:
+            if any(self._is_over(centre).any() for centre in centres[group]):
+                return int(group[0])
+            # they went over an edge, and may go on
+            self._watched = [other for other in self._watched if other is not group]
         return None
+
+    def _is_above(self, point: NDArray[np.float64]) -> bool:
+        """Whether a floor lies under a point (3,) [m]."""
+        return bool((self._is_over(point) & (self._low[:, 2] < point[2])).any())
 
     def _is_over(self, point: NDArray[np.float64]) -> NDArray[np.bool_]:
         """Whether each floor lies over or under a point (3,) [m], seen from above."""

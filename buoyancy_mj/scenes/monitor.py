@@ -42,9 +42,11 @@ class Monitor:
 
         # the deepest point of a body is a corner of one of its convex hulls
         hulls = vehicle.hulls
-        self._corners = [
-            (body, _convex_corners(hulls, body)) for body in sorted({hull.body for hull in hulls})
-        ]
+        self._corners = []
+        for body in sorted({hull.body for hull in hulls}):
+            corners = _convex_corners(hulls, body)
+            radius = float(np.linalg.norm(corners, axis=1).max())
+            self._corners.append((body, corners, radius))
 
         # pairs of geoms of which one is the vehicle's and the other is fixed
         fixed = ~find_moving_bodies(model)[model.geom_bodyid]
@@ -54,25 +56,39 @@ class Monitor:
 
     def add_poses(self, poses: Poses, time: float) -> None:
         """Keep the draft and the height of the centre of gravity in poses at a time [s]."""
-        corners = np.concatenate([_move(points, poses, body) for body, points in self._corners])
-        self.draft = float(self._water.depth(self._choose_deep(corners, time), time).max())
+        points = self._find_deep_corners(poses, time)
+        self.draft = float(self._water.depth(points, time).max())
         self.peak_draft = max(self.peak_draft, self.draft)
         vehicle = self._vehicle
         height = vehicle.masses @ poses.xipos[vehicle.bodies, 2] / vehicle.mass
         self._heights.append((time, float(height)))
 
-    def _choose_deep(self, points: NDArray[np.float64], time: float) -> NDArray[np.float64]:
-        """Those of points (n, 3) [m] that can be deepest at a time [s].
+    def _find_deep_corners(self, poses: Poses, time: float) -> NDArray[np.float64]:
+        """Corners (n, 3) [m] in the world frame that can be deepest at a time [s], few of all.
 
-        Seen from the lowest point, the surface rises by its slope there, and by no more than its
-        greatest curvature beyond that. What lies higher than this is less deep.
+        Within a radius the surface leaves its tangent plane by no more than half its greatest
+        curvature times the square of the radius.
         """
-        lowest = points[np.argmin(points[:, 2])]
-        apart = points - lowest
-        x, y, z = apart.T
-        along, across = self._water.slope(lowest[0], lowest[1], time)
-        rise = along * x + across * y + 0.5 * self._curvature * (x * x + y * y)
-        return np.asarray(points[z <= rise + 1e-9])
+        origin = poses.xpos[self._vehicle.root]
+        down = np.array([0.0, 0.0, -1.0])
+        if self._curvature > 0.0:
+            down[:2] = self._water.slope(origin[0], origin[1], time)
+
+        # depths under the tangent plane, up to a constant
+        depths, reach = [], 0.0
+        for body, corners, radius in self._corners:
+            arm = poses.xpos[body] - origin
+            depths.append(corners @ (down @ poses.xmat[body].reshape(3, 3)) + down @ arm)
+            reach = max(reach, radius + math.hypot(*arm))
+
+        # those that may lie under the surface as deep as the deepest
+        least = max(float(depth.max()) for depth in depths) - self._curvature * reach**2 - 1e-9
+        return np.concatenate(
+            [
+                _move(corners[depth >= least], poses, body)
+                for (body, corners, _), depth in zip(self._corners, depths, strict=True)
+            ]
+        )
 
     def add_contacts(self, data: mujoco.MjData, time: float) -> None:
         """Count the step that ended at a time [s] if the vehicle touched something fixed in it."""

@@ -35,7 +35,7 @@ INTEGRATORS = {
     for name, integrator in mujoco.mjtIntegrator.__members__.items()
 }
 """MuJoCo's integrators by lower-case name."""
-_FILLED_IN = ("name", "text", "folder")
+_FILLED_IN = ("stem", "text", "folder")
 """Fields of a scene that its reader fills in; they are no keys."""
 
 
@@ -73,7 +73,7 @@ class Scene(Settings):
     bodies; None keeps the masses of its file."""
     cog_shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Shift of the centre of gravity of the vehicle's root body, in its frame (3,) [m]."""
-    name: str = ""
+    stem: str = ""
     """Name of the scene's file, or of the vehicle that a setting put into it, for recordings."""
     text: str = ""
     """The scene as TOML text, for the record."""
@@ -165,25 +165,25 @@ def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
         raise SceneError(f"scene '{path}' is no valid TOML: {error}") from error
     except (OSError, UnicodeDecodeError) as error:
         raise SceneError(f"cannot read scene '{path}': {error}") from error
-    name = path.stem
+    stem = path.stem
     vehicle, title = table.get("vehicle"), table.get("title")
     for setting in settings:
         apply_setting(table, setting)
 
     # another vehicle calls itself, and its recordings, by its own name
     if isinstance(table.get("vehicle"), str) and table["vehicle"] != vehicle:
-        name = name_from_file(table["vehicle"])
+        stem = name_from_file(table["vehicle"])
         if table.get("title") == title:
-            table["title"] = f"{name} in the scene {path.stem}"
+            table["title"] = f"{stem} in the scene {path.stem}"
     header = "".join(f"# with {setting}\n" for setting in settings)
     where = f"scene '{path.stem}'"
-    return scene_from_table(table, where=where, name=name, text=header + text, folder=path.parent)
+    return scene_from_table(table, where=where, stem=stem, text=header + text, folder=path.parent)
 
 
 def scene_from_table(
     table: Mapping[str, Any],
     where: str = "scene",
-    name: str = "",
+    stem: str = "",
     text: str = "",
     folder: Path = Path(),
 ) -> Scene:
@@ -192,7 +192,7 @@ def scene_from_table(
     Args:
         table: the keys of a scene's file, `KEYS`, and their values.
         where: what errors call the table.
-        name: name of the scene's file.
+        stem: name of the scene's file.
         text: the table as TOML text, for the record.
         folder: where relative paths in the table start.
 
@@ -200,7 +200,7 @@ def scene_from_table(
         SceneError: an unknown key, a missing one, or a value that makes no sense.
     """
     plain = dict(table)
-    fields: dict[str, Any] = {"name": name, "text": text, "folder": folder}
+    fields: dict[str, Any] = {"stem": stem, "text": text, "folder": folder}
 
     # tables in the table
     fields["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)

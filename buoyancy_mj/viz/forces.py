@@ -4,53 +4,50 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from buoyancy_mj.loads.loads import Loads
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.scenes.frames import VehicleFrame
+from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL
 
 
-def draw_centres(
-    log: Log, vehicle: Vehicle, frame: VehicleFrame, loads: Loads, name: str = ""
-) -> None:
+def draw_centres(log: Log, vehicle: Vehicle, frame: Frame, name: str = "") -> None:
     """Draw a centre of gravity, and the centres of buoyancy of all hulls and of each.
 
     Args:
         log: draws.
         vehicle: the vehicle.
-        frame: the vehicle at that instant.
-        loads: what the water does then.
+        frame: the instant.
         name: what tells the vehicle from others; '' for the only one.
     """
-    centroids = loads.hull.centroid[vehicle.rows]
-    wet = loads.hull.volume[vehicle.rows] > 0.0
-    total = frame.centre_of_buoyancy[None] if wet.any() else np.zeros((0, 3))
+    seen = frame.vehicles[vehicle.name]
+    wet = vehicle.rows[frame.loads.hull.volume[vehicle.rows] > 0.0]
+    total = seen.centre_of_buoyancy[None] if len(wet) else np.zeros((0, 3))
     for part, points, cause, radius in (
-        ("gravity", [frame.centre_of_mass], "weight", 0.02),
-        ("buoyancy_of_hulls", centroids[wet], "buoyancy", 0.01),
+        ("gravity", [seen.centre_of_mass], "weight", 0.02),
+        ("buoyancy_of_hulls", frame.loads.hull.centroid[wet], "buoyancy", 0.01),
         ("buoyancy", total, "buoyancy", 0.02),
     ):
         spheres = rr.Points3D(points, colors=[COLOURS[cause]], radii=[radius * vehicle.length])
         log(_entity("centres", name, part), spheres)
 
 
-def draw_forces(log: Log, vehicle: Vehicle, frame: VehicleFrame, name: str = "") -> None:
+def draw_forces(log: Log, vehicle: Vehicle, frame: Frame, name: str = "") -> None:
     """Draw an arrow for each force, half as long as the vehicle for its weight.
 
     Args:
         log: draws.
         vehicle: the vehicle.
-        frame: the vehicle at that instant.
+        frame: the instant.
         name: what tells the vehicle from others; '' for the only one.
     """
     size, weight = vehicle.length, vehicle.weight
-    centre = frame.centre_of_mass
-    origin = frame.centre_of_buoyancy if frame.volume > 0.0 else centre
+    seen = frame.vehicles[vehicle.name]
+    centre = seen.centre_of_mass
+    origin = seen.centre_of_buoyancy if seen.volume > 0.0 else centre
     scale = 0.5 * size / weight if weight > 0.0 else 0.0
     down = np.array([0.0, 0.0, -weight])
     _draw_arrow(log, _entity("forces", name, "weight"), centre, scale * down, size)
-    for cause, force in frame.forces.items():
+    for cause, force in seen.forces.items():
         _draw_arrow(log, _entity("forces", name, cause), origin, scale * force, size)
 
 

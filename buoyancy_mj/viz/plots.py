@@ -6,9 +6,8 @@ import numpy as np
 import rerun as rr
 import trimesh
 
-from buoyancy_mj.loads.loads import Loads
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.scenes.frames import VehicleFrame
+from buoyancy_mj.scenes.frames import Frame
 
 Colour = tuple[int, int, int]
 Line = tuple[str, ...]
@@ -67,22 +66,18 @@ def list_plots(vehicle: str = "") -> dict[str, list[str]]:
     }
 
 
-def values(vehicle: Vehicle, frame: VehicleFrame, loads: Loads) -> dict[Line, float]:
+def values(vehicle: Vehicle, frame: Frame) -> dict[Line, float]:
     """The values of all lines of a vehicle at one instant.
-
-    Args:
-        vehicle: the vehicle.
-        frame: the vehicle at that instant.
-        loads: what the water does then.
 
     Returns:
         Heights [m], angles [degrees], energies [J], magnitudes of forces [N], volumes [l].
     """
-    energy = frame.energy
-    roll, pitch, yaw = np.degrees(frame.attitude).tolist()
+    seen = frame.vehicles[vehicle.name]
+    energy = seen.energy
+    roll, pitch, yaw = np.degrees(seen.attitude).tolist()
     result: dict[Line, float] = {
-        ("height", "centre_of_gravity"): float(frame.centre_of_mass[2]),
-        ("height", "surface"): frame.elevation,
+        ("height", "centre_of_gravity"): float(seen.centre_of_mass[2]),
+        ("height", "surface"): seen.elevation,
         ("attitude", "roll"): roll,
         ("attitude", "pitch"): pitch,
         ("attitude", "yaw"): yaw,
@@ -91,12 +86,12 @@ def values(vehicle: Vehicle, frame: VehicleFrame, loads: Loads) -> dict[Line, fl
         ("energy", "buoyancy"): energy.buoyancy,
         ("energy", "total"): energy.total,
         ("force", "weight"): vehicle.weight,
-        ("volume", "total"): 1000.0 * frame.volume,
+        ("volume", "total"): 1000.0 * seen.volume,
     }
-    for cause, force in frame.forces.items():
+    for cause, force in seen.forces.items():
         result["force", cause] = float(np.linalg.norm(force))
     for hull, row in zip(vehicle.hulls, vehicle.rows, strict=True):
-        result["volume", "hulls", hull.name] = 1000.0 * float(loads.hull.volume[row])
+        result["volume", "hulls", hull.name] = 1000.0 * float(frame.loads.hull.volume[row])
     return result
 
 

@@ -106,15 +106,13 @@ class Recording:
         middle = find_middle(one.centre_of_mass for one in frame.vehicles.values())
         self._surface.draw(self._log, middle, frame.time)
         for vehicle, name in self._vehicles():
-            of_vehicle = frame.vehicles[vehicle.name]
-            draw_centres(self._log, vehicle, of_vehicle, frame.loads, name)
-            draw_forces(self._log, vehicle, of_vehicle, name)
+            draw_centres(self._log, vehicle, frame, name)
+            draw_forces(self._log, vehicle, frame, name)
 
         # the plots, as columns of many frames
         self._times.append(frame.time)
         for vehicle, name in self._vehicles():
-            values = plots.values(vehicle, frame.vehicles[vehicle.name], frame.loads)
-            for line, value in values.items():
+            for line, value in plots.values(vehicle, frame).items():
                 self._lines.setdefault(plots.entity(line, name), []).append(value)
         if self._times[-1] - self._times[0] >= FLUSH_EVERY:
             self._send_lines()
