@@ -181,8 +181,10 @@ def test_an_open_shell_is_refused_and_its_convex_hull_floats(tmp_path):
     result = CliRunner().invoke(app, ["run", "auv_waves", "--vehicle", path, "--no-record"])
     assert result.exit_code == 1
     assert (
-        "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)"
-        in result.stderr
+        "close the mesh, take its convex hull (--hull 'shell=convex', in Python "
+        "Selection(hull='shell=convex'), "
+        'in MJCF <text name="buoyancy_hull" data="shell=convex"/>), '
+        "or leave the geom out (--geoms)" in result.stderr
     )
     found, _ = inspect_model(path, "--hull", "convex")
     assert found["geoms"][0]["hull"] == "convex"
