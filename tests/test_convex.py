@@ -49,7 +49,7 @@ def test_a_convex_hull_keeps_the_facets_without_area_that_close_it():
 
 
 def test_a_convex_hull_of_points_in_a_plane_is_refused():
-    with pytest.raises(MeshError, match="^lid: it is flat and has no convex hull; give it thick"):
+    with pytest.raises(MeshError, match=r"^lid: it is flat and has no convex"):
         convex_hull(np.array([[0.0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]]), "lid")
 
 

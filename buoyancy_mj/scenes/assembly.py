@@ -11,10 +11,11 @@ from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.loads.coefficients import add_coefficients
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.dry_land import remove_dry_land
 from buoyancy_mj.scenes.scene import EQUILIBRIUM, INTEGRATORS, Scene
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec
 from buoyancy_mj.scenes.start import place_vehicle, settle_vehicle
-from buoyancy_mj.scenes.vehicles import read_vehicle, remove_dry_land
+from buoyancy_mj.scenes.vehicles import read_vehicle
 
 ENVIRONMENT = "environment/"
 """Prefix of the environment's names in a joined model; the vehicle's names stay as they are."""
@@ -77,7 +78,7 @@ def _join_files(scene: Scene) -> tuple[mujoco.MjSpec, int]:
     """The vehicle in its environment, not yet compiled, and the number of bodies without it."""
     path = catalog.model_path(scene.vehicle, scene.folder)
     spec = read_vehicle(path)
-    remove_dry_land(spec, path, scene.water.level)
+    remove_dry_land(spec, path, scene.water.level, scene.start.position)
     if scene.coefficients is not None:
         add_coefficients(spec, scene.coefficients.read(scene.folder))
     bodies = len(spec.bodies)
