@@ -9,6 +9,7 @@ import numpy as np
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
 from buoyancy_mj.scenes.specs import read_spec
+from buoyancy_mj.scenes.urdf import add_missing_inertia, is_urdf
 
 _NO_GRAVITY = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
 
@@ -17,13 +18,15 @@ def read_vehicle(path: Path) -> mujoco.MjSpec:
     """Read a vehicle's file without compiling it, and make it ready for the water of a scene.
 
     The vehicle gets a free joint if it has none, gravity if it is without, and loses the water that
-    its file brings.
+    its file brings. Links of a URDF without inertia get the smallest sound one.
 
     Raises:
         ModelError: MuJoCo refuses the file, or it has no body that could float.
     """
     spec = read_spec(path)
     _add_free_joint(spec, path)
+    if is_urdf(path):
+        add_missing_inertia(spec)
     _turn_gravity_on(spec)
     _remove_water(spec)
     return spec
