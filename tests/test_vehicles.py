@@ -102,14 +102,16 @@ def test_a_base_without_inertia_is_reported(tmp_path):
     refused(
         path,
         "a body that floats needs mass and inertia: give it an <inertial>, "
-        "or bound them by <compiler boundmass",
+        "or bound them by <mujoco><compiler boundmass",
     )
 
 
-def test_a_mesh_in_ascii_is_reported(tmp_path):
+def test_a_mesh_in_ascii_is_read(tmp_path):
     stl(tmp_path, "base.stl", shapes.box((0.2, 0.2, 0.1)), kind="stl_ascii")
     path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=10, inertia=0.2))
-    refused(path, "save the mesh as a binary STL or as OBJ")
+    found, _ = inspect_model(path)
+    assert found["geoms"][0]["volume"] == pytest.approx(0.032, rel=1e-6)
+    assert ran(path)[0]["mass"] == pytest.approx(11.0)
 
 
 # MJCF of simulated animals
@@ -135,6 +137,21 @@ def test_what_swims_without_gravity_weighs_in_water(tmp_path, gravity, flag, tol
     assert told in notes
     assert "ground plane 'pond'" in notes
     assert summary["net_weight"] < 0.0
+
+
+# plates
+
+
+@pytest.mark.parametrize("size", [".5 .5 1e-17", "1e-17 1e-17 .5"])
+def test_what_is_too_thin_for_a_convex_hull_runs_beside_what_floats(tmp_path, size):
+    path = write(
+        tmp_path,
+        "plate.xml",
+        f'<mujoco><worldbody><body name="b"><freejoint/><geom type="box" size="{size}" mass="0"/>'
+        '<geom type="box" size=".1 .1 .1" pos="0 0 2" mass="4"/></body></worldbody></mujoco>',
+    )
+    inspect_model(path)
+    assert ran(path)[0]["mass"] == pytest.approx(4.0)
 
 
 # hulls of ships
