@@ -174,6 +174,20 @@ def test_a_file_that_is_written_twice_within_a_second_is_read_twice(tmp_path, fi
     assert volumes == pytest.approx(WEDGE.volume * np.array([1.0, 8.0, 27.0]), rel=1e-6)
 
 
+def test_so_is_a_height_field(tmp_path):
+    path = tmp_path / "bed.xml"
+    path.write_text(
+        '<mujoco><asset><hfield name="bed" file="bed.bin" size="1 1 1 1"/></asset><worldbody>'
+        '<geom type="hfield" hfield="bed"/></worldbody></mujoco>'
+    )
+    for number, heights in enumerate(([0.0, 1.0, 1.0, 1.0], [1.0, 0.0, 1.0, 1.0])):
+        content = np.int32([2, 2]).tobytes() + np.float32(heights).tobytes()
+        (tmp_path / "bed.bin").write_bytes(content)
+        time = 1_700_000_000 * 10**9 + number
+        os.utime(tmp_path / "bed.bin", ns=(time, time))
+        assert compile_spec(read_spec(path), path).hfield_data.tolist() == heights
+
+
 def test_a_file_is_read_once_until_it_changes(tmp_path, monkeypatch):
     path = write(tmp_path, "hull.ply", "ply")
     read(path)

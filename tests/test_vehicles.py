@@ -139,6 +139,22 @@ def test_what_swims_without_gravity_weighs_in_water(tmp_path, gravity, flag, tol
     assert summary["net_weight"] < 0.0
 
 
+@pytest.mark.parametrize("flag", ["false", "true"])
+def test_a_fin_that_is_drawn_alone_displaces_whether_or_not_visual_geoms_are_discarded(
+    tmp_path, flag
+):
+    path = write(
+        tmp_path,
+        "fin.xml",
+        f'<mujoco><compiler discardvisual="{flag}"/><worldbody><body name="b"><freejoint/>'
+        '<geom type="box" size=".1 .1 .1" mass="4"/><body name="fin" pos="0 0 -.2"><joint/>'
+        '<geom name="fin" type="box" size=".1 .1 .1" mass="1" contype="0" conaffinity="0"/>'
+        "</body></body></worldbody></mujoco>",
+    )
+    assert inspect_model(path)[0]["floating"][0]["displaced"] == pytest.approx(16.0)
+    assert ran(path)[0]["mass"] == pytest.approx(5.0)
+
+
 # plates
 
 

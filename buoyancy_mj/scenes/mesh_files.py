@@ -3,8 +3,9 @@
 import contextlib
 import functools
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import mujoco
@@ -21,7 +22,7 @@ _MOST_FACES = 200_000
 _FRESH = 2.0
 """Age [s] up to which MuJoCo may remember an older state of a file: it keeps whole seconds."""
 _SEEN: dict[Path, tuple[int, int]] = {}
-"""Time of change [ns] and size of each mesh file when it was last read here."""
+"""Time of change [ns] and size of each file when it was last read here."""
 
 
 def read_mesh_files(spec: mujoco.MjSpec, path: Path) -> None:
@@ -36,9 +37,10 @@ def read_mesh_files(spec: mujoco.MjSpec, path: Path) -> None:
     Raises:
         ModelError: a file cannot be read, or what reads it is not installed.
     """
-    files = list(_find_files(spec, path))
-    _forget_changed([file for _, file in files])
-    for asset, file in files:
+    meshes = list(_find_files(spec.meshes, spec, path))
+    fields = _find_files(spec.hfields, spec, path)
+    _forget_changed([file for _, file in (*meshes, *fields)])
+    for asset, file in meshes:
         if _needs_trimesh(file):
             change = file.stat().st_mtime_ns
             try:
@@ -49,10 +51,12 @@ def read_mesh_files(spec: mujoco.MjSpec, path: Path) -> None:
             asset.file = asset.content_type = ""
 
 
-def _find_files(spec: mujoco.MjSpec, path: Path) -> Iterator[tuple[mujoco.MjsMesh, Path]]:
-    """Mesh assets and their files; MuJoCo tells of those that do not exist."""
+def _find_files(
+    assets: Iterable[Any], spec: mujoco.MjSpec, path: Path
+) -> Iterator[tuple[Any, Path]]:
+    """Assets and their files; MuJoCo tells of those that do not exist."""
     folders = [Path(spec.modelfiledir or path.parent)]
-    for asset in spec.meshes:
+    for asset in assets:
         place = Path(asset.compiler.meshdir) / asset.file
         if asset.file and not (folders[0] / place).is_file() and len(folders) == 1:
             folders += _list_model_folders(path)
@@ -117,7 +121,7 @@ def _read_triangles(file: Path, _change: int) -> tuple[NDArray[np.float32], NDAr
 def _forget_changed(files: list[Path]) -> None:
     """Make MuJoCo read files anew that changed since they were last read.
 
-    It remembers a mesh by its path and the second in which the file was written, so that it takes
+    It remembers a mesh or height field by its path and the second in which the file was written, so that it takes
     a file written twice within a second for the first one.
     """
     changed = False

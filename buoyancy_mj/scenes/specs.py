@@ -43,7 +43,8 @@ def read_spec(path: Path) -> mujoco.MjSpec:
     """Read an MJCF or URDF file without compiling it, with meshes that MuJoCo does not read.
 
     Files of ROS packages are found. Meshes in the formats of `mesh_files.FORMATS`, and STL as text,
-    are read here.
+    are read here. Visual geoms are kept, whatever the file's `discardvisual` says: they may displace
+    water.
 
     Raises:
         ModelError: MuJoCo cannot read the file, with MuJoCo's own message; a package is missing; or
@@ -56,6 +57,10 @@ def read_spec(path: Path) -> mujoco.MjSpec:
         raise ModelError(
             f"MuJoCo cannot read '{path}': {message}{_find_mend(message, path)}"
         ) from error
+
+    # a body without collision geometry displaces water by what is drawn of it
+    spec.compiler.discardvisual = False
+
     for asset in spec.meshes:
         if asset.file.startswith(_PACKAGE_SCHEMES):
             asset.file = str(_find_in_package(asset.file, path))
