@@ -121,8 +121,8 @@ def _read_triangles(file: Path, _change: int) -> tuple[NDArray[np.float32], NDAr
 def _forget_changed(files: list[Path]) -> None:
     """Make MuJoCo read files anew that changed since they were last read.
 
-    It remembers a mesh or height field by its path and the second in which the file was written, so that it takes
-    a file written twice within a second for the first one.
+    It remembers a mesh or height field by its path and the second in which the file was written, so
+    that it takes a file written twice within a second for the first one.
     """
     changed = False
     for file in files:

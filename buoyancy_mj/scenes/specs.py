@@ -43,8 +43,7 @@ def read_spec(path: Path) -> mujoco.MjSpec:
     """Read an MJCF or URDF file without compiling it, with meshes that MuJoCo does not read.
 
     Files of ROS packages are found. Meshes in the formats of `mesh_files.FORMATS`, and STL as text,
-    are read here. Visual geoms are kept, whatever the file's `discardvisual` says: they may displace
-    water.
+    are read here. Visual geoms are kept, whatever `discardvisual` says: they may displace water.
 
     Raises:
         ModelError: MuJoCo cannot read the file, with MuJoCo's own message; a package is missing; or
