@@ -128,19 +128,29 @@ def test_a_rod_gets_only_the_moment_that_it_lacks(tmp_path):
     assert sorted(model.body("rod").inertia) == pytest.approx([ball, 0.01, 0.01])
 
 
-@pytest.mark.parametrize("mass", [0, -1])
-def test_what_has_geometry_and_no_mass_is_refused_with_a_mend_that_works(tmp_path, mass):
-    fin = link("fin", mass, 0, collision=BOX), joint("fin")
-    message = refuse(tmp_path, BASE, *fin)
-    if mass < 0:
-        return
+def test_a_propeller_that_is_drawn_alone_and_has_no_mass_gets_a_gram(tmp_path):
+    model, told = read(
+        tmp_path, link("base", 20, visual=BOX), link("prop", visual=BOX), joint("prop")
+    )
+    assert told == ["links without mass get mass and inertia of a ball of water of 1 g: 'prop'"]
+    assert model.body("prop").mass == pytest.approx(0.001)
+
+
+@pytest.mark.parametrize("base", [link("base", 0, 0, collision=BOX), link("base", visual=BOX)])
+def test_a_base_without_mass_is_refused_with_a_mend_that_works(tmp_path, base):
+    message = refuse(tmp_path, base)
     assert message.endswith(
         "a body that floats needs mass and inertia: give it an <inertial>, or bound them by "
         '<mujoco><compiler boundmass="0.001" boundinertia="1e-08"/></mujoco> in the <robot>'
     )
     mend = message[message.index("<mujoco>") : message.index(" in the <robot>")]
-    model, _ = read(tmp_path, mend, BASE, *fin)
-    assert model.body("fin").mass == pytest.approx(0.001)
+    model, _ = read(tmp_path, mend, base)
+    assert model.body("base").mass == pytest.approx(0.001)
+
+
+@pytest.mark.parametrize(("mass", "inertia"), [(-1, 0.1), (1, -0.1)])
+def test_negative_numbers_are_refused(tmp_path, mass, inertia):
+    assert "Error" in refuse(tmp_path, BASE, link("fin", mass, inertia), joint("fin"))
 
 
 def test_an_inertia_that_no_body_has_is_refused_with_a_mend_that_works(tmp_path):

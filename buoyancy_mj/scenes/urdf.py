@@ -51,7 +51,11 @@ def read_urdf(path: Path) -> mujoco.MjSpec:
         return mujoco.MjSpec.from_file(str(path))
 
     # nothing would be left of the vehicle
-    root.append(ElementTree.fromstring(_KEEP_VISUAL))
+    element = root
+    for tag in ("mujoco", "compiler"):
+        below = element.find(tag)
+        element = ElementTree.SubElement(element, tag) if below is None else below
+    element.set("discardvisual", "false")
     spec = mujoco.MjSpec.from_string(ElementTree.tostring(root, encoding="unicode"))
     spec.modelfiledir = str(path.parent)
     return spec
@@ -90,9 +94,10 @@ def add_missing_inertia(spec: mujoco.MjSpec) -> None:
 
     MuJoCo refuses a body that moves and has no mass or inertia. Many links have none in public
     files: frames that other links hang on, thrusters of a gram. Each gets the inertia of a ball of
-    water of its mass, 2/5 m r^2; a frame without geometry and mass gets a gram. What has geometry
-    and no mass, or negative inertia, is left for MuJoCo to refuse.
+    water of its mass, 2/5 m r^2, and the mass of a gram if it has none. MuJoCo still refuses a base
+    that has geometry and no mass, and negative numbers.
     """
+    bases = {body.name for body in spec.worldbody.bodies}
     massless: list[str] = []
     light: list[str] = []
     for body in spec.bodies[1:]:
@@ -103,7 +108,7 @@ def add_missing_inertia(spec: mujoco.MjSpec) -> None:
             if np.linalg.eigvalsh(_read_inertia(body))[0] >= -mujoco.mjMINVAL:
                 _set_inertia(body, float(body.mass))
                 light.append(body.name)
-        elif not any(part.geoms for part in carried) and body.mass >= 0.0:
+        elif body.mass >= 0.0 and not (body.name in bases and any(part.geoms for part in carried)):
             _set_inertia(body, _LEAST_MASS)
             massless.append(body.name)
 
