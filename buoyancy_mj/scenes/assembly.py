@@ -15,12 +15,13 @@ from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, SceneError
 from buoyancy_mj.loads.coefficients import add_coefficients
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.dry_land import remove_dry_land
 from buoyancy_mj.scenes.parts import Afloat, Part, choose_free, find_afloat
 from buoyancy_mj.scenes.scene import INTEGRATORS, Scene
 from buoyancy_mj.scenes.scene_vehicle import ENVIRONMENT, EQUILIBRIUM, SceneVehicle
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec, read_spec
 from buoyancy_mj.scenes.start import place_vehicle, settle_vehicle
-from buoyancy_mj.scenes.vehicles import read_vehicle, remove_dry_land
+from buoyancy_mj.scenes.vehicles import read_vehicle
 
 
 class Assembly(NamedTuple):
@@ -125,7 +126,7 @@ def _read_entry(scene: Scene, entry: SceneVehicle) -> mujoco.MjSpec:
     """The file of a vehicle, ready for the scene's water."""
     path = catalog.model_path(entry.model, scene.folder)
     spec = read_vehicle(path)
-    remove_dry_land(spec, path, scene.water.level)
+    remove_dry_land(spec, path, scene.water.level, entry.start.position)
     if entry.coefficients is not None:
         add_coefficients(spec, entry.coefficients.read(scene.folder))
     return spec

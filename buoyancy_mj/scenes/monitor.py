@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.hull import Hull
@@ -120,8 +120,14 @@ class Monitor:
 
 def _convex_corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:
     """Vertices (n, 3) [m] of the convex hulls of a body's hulls, in its frame."""
-    meshes = [hull.mesh_in_body for hull in hulls if hull.body == body]
-    return np.vstack([mesh.vertices[ConvexHull(mesh.vertices).vertices] for mesh in meshes])
+    corners = []
+    for vertices in (hull.mesh_in_body.vertices for hull in hulls if hull.body == body):
+        try:
+            corners.append(vertices[ConvexHull(vertices).vertices])
+        except QhullError:
+            # so thin that it has no convex hull
+            corners.append(vertices)
+    return np.vstack(corners)
 
 
 def _move(points: NDArray[np.float64], poses: Poses, body: int) -> NDArray[np.float64]:
