@@ -261,7 +261,8 @@ def _try_compiled(
 
 def _link(function: Any) -> _Installed | None:
     """The water that acts in a callback; None if none of ours does."""
-    return next((link for link in _lent if link.function is function), None)
+    # a copy: the end of a generator may change the list at any time
+    return next((link for link in tuple(_lent) if link.function is function), None)
 
 
 def _get(slot: str) -> Any:

@@ -75,7 +75,7 @@ class CompiledWater:
         links = Links(
             model=model._address,
             signature=model.signature,
-            sizes=sum_sizes(model.geom_size.view(np.int64)),
+            sizes=sum_sizes(np.frombuffer(load_model.sizes, np.int64).copy().reshape(-1, 3)),
             measure=address_of(self._measure),
             sizes_text=ctypes.addressof(self._sizes_text),
             act=compile_kernel(passive.act).address,
