@@ -471,16 +471,6 @@ def test_ways_in_that_do_not_exist_or_contradict_are_refused():
     for options, message in cases:
         with pytest.raises(EngineError, match=message), water.installed(**options):
             pass
-    message = (
-        "^this water acts through qfrc_passive already, and would act twice through xfrc_applied: "
-        "leave the other `installed` first$"
-    )
-    with (
-        water.installed(),
-        pytest.raises(EngineError, match=message),
-        water.installed(through="xfrc_applied"),
-    ):
-        pass
 
 
 def test_a_second_water_on_the_same_rows_of_the_world_is_refused():

@@ -109,6 +109,30 @@ def test_a_water_that_is_lent_twice_stays_until_both_blocks_end():
     assert not floats(model, data)
 
 
+@pytest.mark.parametrize(
+    ("outer", "inner", "now", "then"),
+    [
+        ({}, {"through": "xfrc_applied"}, "through qfrc_passive", "through xfrc_applied"),
+        ({"through": "xfrc_applied"}, {}, "through xfrc_applied", "through qfrc_passive"),
+        ({}, {"native": False}, "compiled", "in Python"),
+        ({"native": False}, {"native": True}, "in Python", "compiled"),
+        ({}, {"copies": True}, "on its own model alone", "on copies"),
+    ],
+)
+def test_a_block_inside_that_asks_for_something_else_is_refused(outer, inner, now, then):
+    water = Buoyancy(box()[0])
+    message = (
+        f"^this water is installed already and acts {now}, which a block inside cannot change: "
+        f"ask for it to act {then} in the outer `installed`$"
+    )
+    with (
+        water.installed(**outer),
+        pytest.raises(EngineError, match=message),
+        water.installed(**inner),
+    ):
+        pass
+
+
 def test_generators_that_hold_waters_end_in_any_order():
     def simulate(model, data):
         with Buoyancy(model, damping=None).installed():

@@ -3,6 +3,7 @@
 import collections
 import contextlib
 import functools
+import weakref
 from collections.abc import Iterator, Sequence
 from typing import Any, Unpack
 
@@ -330,7 +331,11 @@ class Buoyancy(ReadOnly):
         Raises:
             EngineError: this MuJoCo is not as expected inside.
         """
-        water = CompiledWater(self.model, self._load_model, self._lock, self._measure_resized)
+        # weakly, since compiled code may outlive this object
+        measure = weakref.WeakMethod(self._measure_resized)
+        water = CompiledWater(
+            self.model, self._load_model, self._lock, lambda: (measure() or _no_water)()
+        )
         self._table[0] = water.address
         return water
 
@@ -386,3 +391,7 @@ class Buoyancy(ReadOnly):
             ModelError: it is not along -z.
         """
         return read_gravity(self.model)
+
+
+def _no_water() -> None:
+    """Measure nothing: the water has gone."""

@@ -63,6 +63,9 @@ class Installable(Protocol):
 class _Installed:
     """A water that acts as a callback."""
 
+    copies = False
+    """Whether it acts on copies of the water's model too."""
+
     def __init__(self, water: Installable, through: str, slot: str) -> None:
         self.water, self.through, self.slot = water, through, slot
         self.blocks = 1
@@ -93,6 +96,7 @@ class _Compiled(_Installed):
         self.function = self._leased.function
         self.follow(previous)
         self._leased.lend(water.handle, copies=copies)
+        self.copies = copies
 
     def follow(self, previous: Any) -> None:
         super().follow(previous)
@@ -125,7 +129,8 @@ class _InPython(_Installed):
             act(data)
 
     def leave(self) -> None:
-        self._act = None
+        # a bound method would keep the water alive
+        self._act = self.function = None
         if self.through == APPLIED:
             self.water.leave_bodies()
 
@@ -161,12 +166,8 @@ def install(
         installed = _find(water)
         if installed is None:
             installed = _enter(water, native, through, copies=copies)
-        elif installed.through != through:
-            raise EngineError(
-                f"this water acts through {installed.through} already, and would act twice "
-                f"through {through}: leave the other `installed` first"
-            )
         else:
+            _check_alike(installed, native, through, copies=copies)
             installed.blocks += 1
     try:
         yield
@@ -192,6 +193,23 @@ def _find(water: Installable) -> _Installed | None:
                 return link
             function = link.previous
     return None
+
+
+def _check_alike(installed: _Installed, native: bool | None, through: str, *, copies: bool) -> None:
+    """Refuse to install a water in another way than it is installed already."""
+    has_code = isinstance(installed, _Compiled)
+    if installed.through != through:
+        now, then = f"through {installed.through}", f"through {through}"
+    elif native is not None and native != has_code:
+        now, then = ("compiled", "in Python") if has_code else ("in Python", "compiled")
+    elif copies and not installed.copies:
+        now, then = "on its own model alone", "on copies"
+    else:
+        return
+    raise EngineError(
+        f"this water is installed already and acts {now}, which a block inside cannot change: "
+        f"ask for it to act {then} in the outer `installed`"
+    )
 
 
 def _enter(water: Installable, native: bool | None, through: str, *, copies: bool) -> _Installed:

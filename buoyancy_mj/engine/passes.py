@@ -91,7 +91,10 @@ def apply(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, las
 def augment(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, last: Pass) -> None:
     """Add the added mass of what `evaluate` found to the mass matrix."""
     last.after[:] = np.nan
-    _factor(model, data, passes.augment(load_model.arrays, _read_engine(model, data), last.record))
+    if "added_mass" in load_model.causes:
+        _factor(
+            model, data, passes.augment(load_model.arrays, _read_engine(model, data), last.record)
+        )
 
 
 def _factor(model: mujoco.MjModel, data: mujoco.MjData, done: int) -> None:

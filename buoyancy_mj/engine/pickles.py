@@ -31,7 +31,7 @@ def _reduce(value: Any, model: mujoco.MjModel) -> tuple[Any, ...]:
     return _restore, (type(value), value.__getstate__())
 
 
-def _restore(kind: type, state: Any) -> Any:
+def _restore(kind: Any, state: Any) -> Any:
     """A model or data from a pickle; importing this module has registered the plugin."""
     value = kind.__new__(kind)
     value.__setstate__(state)
