@@ -279,7 +279,7 @@ class Buoyancy(ReadOnly):
             # a pass lies no more than a step back; an older one was of other data at the address
             if (
                 record is None
-                or not abs(data.time - record.instant[0]) <= 1.001 * self.model.opt.timestep
+                or not abs(data.time - record.instant[0]) <= 1.001 * data.model.opt.timestep
             ):
                 raise EngineError(
                     f"this water has not acted on these data at their time, {data.time:g} s; "
@@ -345,8 +345,13 @@ class Buoyancy(ReadOnly):
         return self._table.ctypes.data
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """Centre of mass (3,) [m] of the floating bodies, world frame."""
-        masses = self.model.body_mass[self.floating]
+        """Centre of mass (3,) [m] of the floating bodies, world frame.
+
+        Raises:
+            ModelError: the data are of another model.
+        """
+        check_data(self.model, data)
+        masses = data.model.body_mass[self.floating]
         centre: NDArray[np.float64] = masses @ data.xipos[self.floating] / masses.sum()
         return centre
 
