@@ -5,6 +5,7 @@ import gc
 import itertools
 import pickle
 import threading
+import weakref
 
 import mujoco
 import numpy as np
@@ -258,7 +259,7 @@ class _no_warning:  # noqa: N801
 
 
 @pytest.mark.parametrize("text", [TWO, SLIDE, HINGES])
-@pytest.mark.parametrize("method", ["act", "act_on_bodies", "evaluate", "loads", "external"])
+@pytest.mark.parametrize("method", ["act", "evaluate", "loads", "external", "centre_of_mass"])
 def test_data_of_another_model_are_refused_and_left_as_they_are(text, method):
     other = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(other)
@@ -407,6 +408,23 @@ def test_a_copy_of_a_water_acts_as_the_water(duplicate):
         other = duplicate(water)
     assert other.settings == water.settings
     assert np.array_equal(end(other, other.model), end(water, model))
+
+
+@pytest.mark.parametrize(
+    "way", [{}, {"native": False}, {"through": "xfrc_applied"}], ids=["compiled", "python", "xfrc"]
+)
+def test_a_water_that_is_lent_no_more_is_freed_at_once(way):
+    model, data = box()
+    water = Buoyancy(model)
+    with water.installed(**way):
+        mujoco.mj_step(model, data)
+    gone = weakref.ref(water), weakref.ref(water._acting)
+    gc.disable()
+    try:
+        del water
+        assert [one() for one in gone] == [None, None]
+    finally:
+        gc.enable()
 
 
 def test_a_water_says_what_it_is():

@@ -15,7 +15,7 @@ MODEL_ARRAYS = (
     "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
     "body_parentid", "body_weldid", "body_pos", "body_quat", "body_plugin",
     "body_dofnum", "jnt_type", "jnt_bodyid", "M_rownnz",
-    "eq_type", "eq_objtype", "eq_obj1id", "eq_obj2id", "eq_active0",
+    "eq_type", "eq_objtype", "eq_obj1id", "eq_obj2id", "eq_active0", "site_bodyid",
     "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
     "names", "plugin",
 )  # fmt: skip
