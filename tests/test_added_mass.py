@@ -428,7 +428,8 @@ def test_above_the_water_nothing_is_added():
         ),
         (
             {"hull": [1, 2, 3]},
-            "the added mass of body 'hull' has 3 numbers; it must be 6, its diagonal, or all 36",
+            "the added mass of body 'hull' is [1, 2, 3], of shape (3,); "
+            "it must be numbers of shape (6,) or (36,) or (6, 6)",
         ),
         (
             {"hull": [1, 2, 3, 4, 5, math.nan]},
@@ -436,7 +437,8 @@ def test_above_the_water_nothing_is_added():
         ),
         (
             {"hull": "heavy"},
-            "the added mass of body 'hull' is 'heavy'; it must be 6 numbers or a 6 x 6 matrix",
+            "the added mass of body 'hull' is 'heavy'; "
+            "it must be numbers of shape (6,) or (36,) or (6, 6)",
         ),
         (
             {"hull": np.eye(6) + np.eye(6, k=1)},

@@ -195,7 +195,7 @@ def test_the_water_of_an_unknown_instance_is_refused():
         ({"method": "sections rule=guess"}, "rule is 'guess'"),
         (
             {"damping": "coefficient=-2"},
-            "coefficient is -2.0; it must be a finite number of at least 0",
+            "coefficient is -2.0; it must be at least 0 and at most 1e+06",
         ),
         ({"damping": "much"}, "damping: unknown kind 'much'; possible: none, panels, silhouette"),
         ({"geoms": "keel*"}, r"no moving geom matches 'keel\*'; possible: .*hull"),

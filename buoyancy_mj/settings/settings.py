@@ -6,9 +6,11 @@ from typing import Any, TypedDict
 
 from numpy.typing import ArrayLike
 
-from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices
+from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.loads.added_mass import SOURCES
 from buoyancy_mj.loads.damping import Damping, Panels
+from buoyancy_mj.loads.matrices import parse_matrix
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.methods import Method, parse_method
@@ -25,7 +27,7 @@ class Settings:
     of the water. A scene has them beside its vehicle, and the plugin keeps them as texts.
 
     Raises:
-        WaterError, ModelError: a water, a damping or a selection of another kind.
+        WaterError, ModelError: a water, a damping, a selection or an added mass of another kind.
         MethodError: an unknown method or pressure; or a pressure, or damping, that needs another
             method.
 
@@ -55,23 +57,26 @@ class Settings:
     def __post_init__(self) -> None:
         # kinds of values
         if not isinstance(self.water, Water):
-            raise WaterError(f"water is {self.water!r}; it must be a Water, as Water(waves=...)")
+            raise WaterError(
+                f"water is {describe(self.water)}; it must be a Water, as Water(waves=...)"
+            )
         if not isinstance(self.damping, Damping | None):
             raise ModelError(
-                f"damping is {self.damping!r}; "
+                f"damping is {describe(self.damping)}; "
                 "it must be Damping(viscous=..., radiation=...) or None"
             )
         if not isinstance(self.selection, Selection):
             raise ModelError(
-                f"selection is {self.selection!r}; "
+                f"selection is {describe(self.selection)}; "
                 "it must be Selection(geoms=..., hull=..., fill=...)"
             )
+        _check_added_mass(self.added_mass)
 
         # names
         object.__setattr__(self, "method", parse_method(self.method))
         if self.pressure not in PRESSURES:
             raise MethodError(
-                f"pressure is '{self.pressure}'; {choices(str(self.pressure), PRESSURES)}"
+                f"pressure is {describe(self.pressure)}; {choices(self.pressure, PRESSURES)}"
             )
 
         # the other methods know neither pressure nor triangles
@@ -87,6 +92,21 @@ class Settings:
                 f"drag by panels needs the method 'exact', not '{self.method.name}', "
                 "which knows no triangles"
             )
+
+
+def _check_added_mass(source: object) -> None:
+    """Refuse what is no source of added mass; which bodies there are is known with the model.
+
+    Raises:
+        ModelError: it is none, or a matrix that is none.
+    """
+    if isinstance(source, Mapping):
+        for body, matrix in source.items():
+            parse_matrix(matrix, f"the added mass of body '{body}'")
+    elif source is not None and (not isinstance(source, str) or source not in SOURCES):
+        raise ModelError(
+            f"added mass is {describe(source)}; {choices(source, SOURCES)}, or matrices by body"
+        )
 
 
 class Options(TypedDict, total=False):
