@@ -148,9 +148,7 @@ def read_array(
         wanted = " or ".join(map(_show_shape, shapes))
         raise error(f"{name} is {describe(value)}{got}; it must be numbers of shape {wanted}")
     if finite and not np.isfinite(array).all():
-        raise error(
-            f"{name} holds {array[~np.isfinite(array)][0]}; its numbers must be finite"
-        )
+        raise error(f"{name} holds {array[~np.isfinite(array)][0]}; its numbers must be finite")
     return array
 
 

@@ -182,6 +182,7 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
         )
 
 
+@pytest.mark.filterwarnings("ignore:the waves are so steep")
 @given(
     st.integers(0, 10**6),
     st.floats(-0.7, 0.7),
@@ -256,9 +257,13 @@ def test_waves_too_short_to_be_resolved_over_a_hull_are_refused():
     exact.PackedHulls(hulls, Water(waves=RegularWave(0.0, wavelength=0.02)))
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1e-4, 1e-300, 2.0, float("nan"), True, "fine", 10**400])
+@pytest.mark.parametrize(
+    "tolerance", [0.0, -1e-4, 1e-300, 2.0, float("nan"), True, "fine", 10**400]
+)
 def test_a_tolerance_that_is_none_is_told(tolerance):
-    with pytest.raises(MethodError, match="it must be a part of the volume, at least 1e-08 and at most 1"):
+    with pytest.raises(
+        MethodError, match="it must be a part of the volume, at least 1e-08 and at most 1"
+    ):
         Exact(tolerance=tolerance)
 
 

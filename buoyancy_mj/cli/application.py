@@ -13,7 +13,7 @@ import typer
 
 from buoyancy_mj import __version__
 from buoyancy_mj.cli.console import err, print_line
-from buoyancy_mj.cli.flags import collect_flags, spread_flags
+from buoyancy_mj.cli.flags import check_texts, collect_flags, spread_flags
 from buoyancy_mj.errors import BuoyancyError
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None)
@@ -23,7 +23,8 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
     """Register a function as a command of the application.
 
     A parameter whose type is a dataclass of flags becomes one flag for each field, see
-    `spread_flags`. An error of this package ends the command with one sentence and exit status 1.
+    `spread_flags`. Texts of several lines, or not in Unicode, are refused. An error of this package
+    ends the command with one sentence and exit status 1.
 
     Args:
         name: name of the command; that of the function if None.
@@ -31,13 +32,14 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
 
     def register(function: Callable[..., None]) -> Callable[..., None]:
         signature = inspect.signature(function)
+        spread = spread_flags(signature)
 
         @functools.wraps(function)
         def run(**values: Any) -> None:
             with _report_errors():
+                check_texts(spread, values)
                 function(**collect_flags(signature, values))
 
-        spread = spread_flags(signature)
         run.__signature__ = spread  # type: ignore[attr-defined]
         run.__annotations__ = {p.name: p.annotation for p in spread.parameters.values()}
         return app.command(name)(run)

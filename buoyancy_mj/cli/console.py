@@ -18,9 +18,9 @@ from rich.progress import (
     TimeElapsedColumn,
 )
 
-# names that users give may hold brackets, which are no markup
-out = Console(markup=False, highlight=False)
-err = Console(markup=False, highlight=False, stderr=True)
+# names that users give may hold brackets, which are no markup, and ':b:', which is no picture
+out = Console(markup=False, emoji=False, highlight=False)
+err = Console(markup=False, emoji=False, highlight=False, stderr=True)
 
 
 def print_line(console: Console, text: str, style: str | None = None) -> None:

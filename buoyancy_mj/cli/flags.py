@@ -3,21 +3,22 @@
 import dataclasses
 import inspect
 import json
-import tomllib
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import SceneError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.records import field_docs
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.settings.texts import parse_toml
 from buoyancy_mj.settings.toml import water_from_table
+from buoyancy_mj.values import read_text
 
 SceneArgument = Annotated[
     str, typer.Argument(help="A scene file (.toml), or the name of a scene that ships; see 'list'.")
@@ -34,6 +35,10 @@ WaterOption = Annotated[
         metavar="KEY=VALUE", help="Describe the still water: density=1025 [kg/m^3], level=0.2 [m]."
     ),
 ]
+
+
+STILL = ("density", "level")
+"""Keys of still water."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -111,16 +116,30 @@ def parse_still_water(settings: list[str] | None) -> Water:
     """The still water that texts KEY=VALUE describe.
 
     Raises:
-        SceneError: a text makes no sense.
+        SceneError: a text makes no sense, or describes what still water does not have.
     """
     words = settings or []
     try:
-        table = tomllib.loads("\n".join(words))
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(
-            f"--water {' '.join(words)}: {error}; write KEY=VALUE, as in density=1025"
-        ) from error
+        table = parse_toml("\n".join(words), f"--water {describe(' '.join(words))}")
+    except SceneError as error:
+        raise SceneError(f"{error}; write KEY=VALUE, as in density=1025") from error
+    for key in table:
+        if key not in STILL:
+            raise SceneError(f"--water: unknown key {describe(key)}; {choices(key, STILL)}")
     return water_from_table(table, "--water")
+
+
+def check_texts(signature: inspect.Signature, values: Mapping[str, Any]) -> None:
+    """Check that all texts among the values of spread flags are one line of Unicode each.
+
+    Raises:
+        SceneError: one is not; the message names the flag.
+    """
+    for parameter in signature.parameters.values():
+        value = values.get(parameter.name)
+        for text in value if isinstance(value, list) else [value]:
+            if isinstance(text, str | Path):
+                read_text(SceneError, _flag_of(parameter), str(text))
 
 
 def spread_flags(signature: inspect.Signature) -> inspect.Signature:
@@ -148,6 +167,15 @@ def collect_flags(signature: inspect.Signature, values: Mapping[str, Any]) -> di
             fields = {field.name: rest.pop(field.name) for field in dataclasses.fields(cls)}
             arguments[parameter.name] = cls(**fields)
     return rest | arguments
+
+
+def _flag_of(parameter: inspect.Parameter) -> str:
+    """How users call a spread flag: '--set', or 'SCENE' for an argument."""
+    (option,) = parameter.annotation.__metadata__
+    if isinstance(option, typer.models.ArgumentInfo):
+        return parameter.name.upper()
+    names: Sequence[str] = option.param_decls or (f"--{parameter.name.replace('_', '-')}",)
+    return names[0]
 
 
 def _is_flags(annotation: Any) -> bool:

@@ -15,6 +15,7 @@ from buoyancy_mj.scenes.scene import EQUILIBRIUM, INTEGRATORS, Scene
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec
 from buoyancy_mj.scenes.start import place_vehicle, settle_vehicle
 from buoyancy_mj.scenes.vehicles import read_vehicle, remove_dry_land
+from buoyancy_mj.settings.config import has_texts
 
 ENVIRONMENT = "environment/"
 """Prefix of the environment's names in a joined model; the vehicle's names stay as they are."""
@@ -41,7 +42,7 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     Args:
         scene: what to assemble.
         with_water: whether the scene's water becomes a part of the model. It does not where MuJoCo
-            would skip it there, see `skips_passive`.
+            would skip it there, see `skips_passive`, nor where it has no texts, see `has_texts`.
 
     Raises:
         ModelError: a file is missing, MuJoCo refuses it, or it has no body that could float; with
@@ -53,7 +54,7 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
-    if with_water and not skips_passive(spec.option.disableflags):
+    if with_water and has_texts(scene) and not skips_passive(spec.option.disableflags):
         # where the plugin cannot be, a warning on import has said so
         with contextlib.suppress(EngineError):
             add_water(spec, scene)

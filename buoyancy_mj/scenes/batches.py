@@ -17,6 +17,8 @@ from buoyancy_mj.scenes.trajectory import Trajectory
 
 BATCH_MEMORY = 2e8
 """Memory that the trajectories of a batch may take [bytes]."""
+MOST_MEMORY = 2e9
+"""Memory that the trajectory of one run may take [bytes]; a longer run goes alone, without it."""
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 _SIZES = ("nq", "nv", "na", "nu", "nbody", "ngeom", "nsite", "nsensordata", "nmocap")
 _TIME = int(mujoco.mjtState.mjSTATE_TIME)
@@ -42,7 +44,7 @@ def run_simulations(
         for start in range(0, len(group), size):
             numbers = group[start : start + size]
             members = [simulations[number] for number in numbers]
-            if plugin_instances(members[0].model):
+            if plugin_instances(members[0].model) and _trajectory_size(members[0]) <= MOST_MEMORY:
                 reasons = run_batch(members, threads)
             else:
                 reasons = [_run_alone(member) for member in members]

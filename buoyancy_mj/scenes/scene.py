@@ -1,20 +1,19 @@
 """`Scene`: all that one run needs, read from TOML and validated."""
 
 import dataclasses
-import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import mujoco
 
-from buoyancy_mj.errors import SceneError, choices
+from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.scenes.overrides import apply_setting
 from buoyancy_mj.settings.config import SELECTION
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.tables import build
+from buoyancy_mj.settings.texts import parse_toml
 from buoyancy_mj.settings.toml import (
     damping_from_table,
     method_from_table,
@@ -22,6 +21,7 @@ from buoyancy_mj.settings.toml import (
     table_of,
     water_from_table,
 )
+from buoyancy_mj.values import read_array, set_number
 
 EQUILIBRIUM = "equilibrium"
 """Value of `Start.at`."""
@@ -37,7 +37,7 @@ class Start:
     """Pose and velocity of the vehicle at the start.
 
     Raises:
-        SceneError: a value that is not finite.
+        SceneError: a value that is no finite number, or a vector that is not of three.
     """
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -60,11 +60,14 @@ class Start:
 
     def __post_init__(self) -> None:
         if self.at not in (None, EQUILIBRIUM):
-            raise SceneError(f"start.at is '{self.at}'; possible: {EQUILIBRIUM}, or leave it out")
-        angles = self.roll, self.pitch, self.yaw
-        numbers = (*self.position, *angles, *self.velocity, *self.angular_velocity)
-        if not all(math.isfinite(number) for number in numbers):
-            raise SceneError(f"start holds {numbers}; every number must be finite")
+            raise SceneError(
+                f"start.at is {describe(self.at)}; possible: {EQUILIBRIUM}, or leave it out"
+            )
+        for name in ("roll", "pitch", "yaw"):
+            set_number(self, SceneError, name)
+        for name in ("position", "velocity", "angular_velocity"):
+            vector = read_array(SceneError, name, getattr(self, name), (3,))
+            object.__setattr__(self, name, tuple(vector.tolist()))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -111,15 +114,11 @@ class Scene(Settings):
             ("timestep", 1e-7, 1.0),
             ("record_rate", 1e-6, 1e5),
         ):
-            value = getattr(self, name)
-            if not least <= value <= most:
-                raise SceneError(
-                    f"{name} is {value:g}; it must be at least {least:g} and at most {most:g}"
-                )
-        if self.mass is not None and not 0.0 < self.mass < math.inf:
-            raise SceneError(f"mass is {self.mass:g} kg; it must be positive")
-        if not all(math.isfinite(shift) for shift in self.cog_shift):
-            raise SceneError(f"cog_shift is {self.cog_shift}; every number must be finite")
+            set_number(self, SceneError, name, least=least, most=most)
+        if self.mass is not None:
+            set_number(self, SceneError, "mass", above=0.0)
+        shift = read_array(SceneError, "cog_shift", self.cog_shift, (3,))
+        object.__setattr__(self, "cog_shift", tuple(shift.tolist()))
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(
                 f"unknown integrator '{self.integrator}'; "
@@ -132,6 +131,8 @@ KEYS = (
     *SELECTION,
 )
 """Keys of a scene's file."""
+_RENAMED = {"drag": "damping"}
+"""Keys that have another name now."""
 
 
 def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
@@ -145,12 +146,10 @@ def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
         SceneError: the file or a setting cannot be read, or says something that makes no sense.
     """
     try:
-        text = path.read_text()
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"scene '{path}' is no valid TOML: {error}") from error
-    except (OSError, UnicodeDecodeError) as error:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
         raise SceneError(f"cannot read scene '{path}': {error}") from error
+    table = parse_toml(text, f"scene '{path}'")
     for setting in settings:
         apply_setting(table, setting)
     header = "".join(f"# with {setting}\n" for setting in settings)
@@ -194,5 +193,8 @@ def scene_from_table(
     # the error for an unknown key lists all keys of a file, those of inner tables too
     for key in plain:
         if key not in KEYS:
-            raise SceneError(f"{where}: unknown key '{key}'; {choices(key, KEYS)}")
+            hint = f"it is '{_RENAMED[key]}' now; " if key in _RENAMED else ""
+            raise SceneTypeError(
+                f"{where}: unknown key {describe(key)}; {hint}{choices(key, KEYS)}"
+            )
     return build(Scene, plain, where, **fields)

@@ -9,8 +9,8 @@ SMALLEST = 1e-6
 """Least period, frequency or depth, in SI units; none in nature comes near it."""
 LARGEST = 1e6
 """Greatest period, wavelength or level, in SI units; none in nature comes near it."""
-GRAVITIES = {"least": 1e-6, "most": 1e12}
-"""Accelerations of gravity that a dispersion relation takes [m/s^2]."""
+STRONGEST = 1e12
+"""Greatest acceleration of gravity in a dispersion relation [m/s^2]."""
 SHORTEST = 0.017
 """Least length of a wave [m].
 

@@ -11,10 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.errors import WaterError
 from buoyancy_mj.sea.distributions import jonswap_moments, jonswap_shape, spreading_angles
 from buoyancy_mj.sea.ranges import (
-    GRAVITIES,
     LARGEST,
     SHORTEST,
     SMALLEST,
+    STRONGEST,
     read_depth,
     read_positive,
 )
@@ -85,7 +85,7 @@ class JonswapSea(IrregularSea):
         set_number(self, WaterError, "peak_period", least=SMALLEST, most=LARGEST)
         set_number(self, WaterError, "gamma", least=1.0, most=20.0)
         set_number(self, WaterError, "direction")
-        set_number(self, WaterError, "gravity", **GRAVITIES)
+        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
         whole = {"components": (1, MOST_COMPONENTS), "seed": (0, 2**63 - 1)}
         for name, (least, most) in whole.items():
             number = read_whole_number(WaterError, name, getattr(self, name), least, most)
@@ -221,7 +221,9 @@ class PiersonMoskowitzSea(IrregularSea):
             height = read_number(
                 WaterError, "significant_height", self.significant_height, above=0.0
             )
-            gravity = read_number(WaterError, "gravity", self.gravity, **GRAVITIES)
+            gravity = read_number(
+                WaterError, "gravity", self.gravity, least=SMALLEST, most=STRONGEST
+            )
             omega = (16.0 * ALPHA / 5.0) ** 0.25 * math.sqrt(gravity / height)
             object.__setattr__(self, "peak_period", 2.0 * math.pi / omega)
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from buoyancy_mj.errors import WaterError
-from buoyancy_mj.sea.ranges import GRAVITIES, LARGEST, SHORTEST, SMALLEST, read_depth
+from buoyancy_mj.sea.ranges import LARGEST, SHORTEST, SMALLEST, STRONGEST, read_depth
 from buoyancy_mj.values import read_number, set_number
 
 GRAVITY = 9.81
@@ -74,7 +74,7 @@ class RegularWave:
         set_number(self, WaterError, "amplitude", least=0.0, most=LARGEST)
         set_number(self, WaterError, "direction")
         set_number(self, WaterError, "phase")
-        set_number(self, WaterError, "gravity", **GRAVITIES)
+        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
         object.__setattr__(self, "depth", read_depth(self.depth))
         if self.amplitude > self.depth:
             raise WaterError(

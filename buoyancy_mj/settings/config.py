@@ -80,7 +80,9 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         )
     water = settings.water
     if type(water) is not Water:
-        raise WaterError(f"{describe(water)} cannot be written into a model; possible is a Water itself")
+        raise WaterError(
+            f"{describe(water)} cannot be written into a model; possible is a Water itself"
+        )
     waves = cast(tuple[Wave, ...], water.waves)
     texts = {
         "density": format_value(float(water.density)),
@@ -94,6 +96,15 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         **{key: " ".join(getattr(settings.selection, key) or ()) for key in SELECTION},
     }
     return {key: text for key, text in texts.items() if text}
+
+
+def has_texts(settings: Settings) -> bool:
+    """Whether settings can be written as texts: all but those of somebody's own classes can."""
+    try:
+        write_plugin_config(settings)
+    except BuoyancyError:
+        return False
+    return True
 
 
 def _parse_water(words: Mapping[str, str], where: str) -> dict[str, Any]:
