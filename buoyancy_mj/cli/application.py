@@ -2,7 +2,9 @@
 
 import functools
 import inspect
+import io
 import signal
+import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -78,10 +80,20 @@ def _report_errors() -> Iterator[None]:
         # MuJoCo's own warnings would go to a file in the working folder
         mujoco.set_mju_user_warning(_print_mujoco_warning)
         signal.signal(signal.SIGTERM, _interrupt)
+        # what a terminal has no letters for is shown by its number
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="backslashreplace")
         try:
             yield
         except BuoyancyError as error:
             print_line(err, f"error: {error}", style="red")
+            raise typer.Exit(1) from error
+        except OSError as error:
+            # what is neither a file's nor the end of a pipe is the output's
+            if error.filename is not None or isinstance(error, BrokenPipeError):
+                raise
+            print_line(err, f"error: the output cannot be written: {error.strerror}", style="red")
             raise typer.Exit(1) from error
         except KeyboardInterrupt:
             raise typer.Exit(130) from None

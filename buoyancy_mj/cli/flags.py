@@ -1,10 +1,11 @@
 """Flags that several commands share, as dataclasses whose fields become flags."""
 
 import dataclasses
+import errno
 import inspect
 import json
 import typing
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -119,10 +120,13 @@ def parse_still_water(settings: list[str] | None) -> Water:
         SceneError: a text makes no sense, or describes what still water does not have.
     """
     words = settings or []
+    what = f"--water {describe(' '.join(words))}"
     try:
-        table = parse_toml("\n".join(words), f"--water {describe(' '.join(words))}")
+        table = parse_toml("\n".join(words), what)
     except SceneError as error:
         raise SceneError(f"{error}; write KEY=VALUE, as in density=1025") from error
+    if len(table) < len(words):
+        raise SceneError(f"{what} says nothing; write KEY=VALUE, as in density=1025")
     for key in table:
         if key not in STILL:
             raise SceneError(f"--water: unknown key {describe(key)}; {choices(key, STILL)}")
@@ -130,7 +134,7 @@ def parse_still_water(settings: list[str] | None) -> Water:
 
 
 def check_texts(signature: inspect.Signature, values: Mapping[str, Any]) -> None:
-    """Check that all texts among the values of spread flags are one line of Unicode each.
+    """Check texts among the values of spread flags: one line of Unicode, and names of files short.
 
     Raises:
         SceneError: one is not; the message names the flag.
@@ -140,6 +144,19 @@ def check_texts(signature: inspect.Signature, values: Mapping[str, Any]) -> None
         for text in value if isinstance(value, list) else [value]:
             if isinstance(text, str | Path):
                 read_text(SceneError, _flag_of(parameter), str(text))
+            if isinstance(text, Path):
+                _check_length(_flag_of(parameter), text)
+
+
+def _check_length(flag: str, path: Path) -> None:
+    """Refuse a path that no file can have here."""
+    try:
+        path.lstat()
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise SceneError(
+                f"{flag} is {describe(str(path))}; it is too long for the name of a file"
+            ) from error
 
 
 def spread_flags(signature: inspect.Signature) -> inspect.Signature:
@@ -174,8 +191,9 @@ def _flag_of(parameter: inspect.Parameter) -> str:
     (option,) = parameter.annotation.__metadata__
     if isinstance(option, typer.models.ArgumentInfo):
         return parameter.name.upper()
-    names: Sequence[str] = option.param_decls or (f"--{parameter.name.replace('_', '-')}",)
-    return names[0]
+    # within Annotated, Typer takes the first name for a default
+    names = (option.default, *(option.param_decls or ()), f"--{parameter.name.replace('_', '-')}")
+    return next(name for name in names if isinstance(name, str) and name.startswith("--"))
 
 
 def _is_flags(annotation: Any) -> bool:

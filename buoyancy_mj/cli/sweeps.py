@@ -10,6 +10,7 @@ from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
 from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags
+from buoyancy_mj.errors import SweepError
 from buoyancy_mj.scenes import catalog, ranges
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.sweep import Sweep
@@ -58,10 +59,17 @@ def sweep(
     plan = Sweep(path, settings, tuple(field.key for field in fields), tuple(values), out)
 
     # the runs
-    failed = 0
+    failed, reason = 0, ""
     columns = MofNCompleteColumn(), TimeRemainingColumn()
     with console.show_progress(path.stem, len(values), *columns) as update:
         for row in plan.run(threads):
-            failed += row["status"] != "done"
+            if row["status"] != "done":
+                failed += 1
+                reason = reason or row["reason"]
             update(advance=1)
+    if failed == len(values):
+        raise SweepError(
+            f"all {failed} runs failed, one of them because {reason}; the rows are in "
+            f"{shlex.quote(str(out))}"
+        )
     console.print_line(console.out, f"{len(values)} runs, {failed} failed: {shlex.quote(str(out))}")

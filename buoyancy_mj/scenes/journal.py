@@ -1,5 +1,6 @@
 """Results of sweeps in files: a journal of CSV that survives a kill, and tables of parquet."""
 
+import contextlib
 import csv
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -36,6 +37,9 @@ class Journal:
         """The columns."""
         self.rows: dict[int, dict[str, str]] = {}
         """Rows by the number of the run."""
+        self._path = path
+        if path.exists() and not path.is_file():
+            raise SweepError(f"cannot keep results in '{path}': it is no file; give another --out")
         try:
             # a line that a kill broke off does not count
             content = path.read_bytes() if path.exists() else b""
@@ -49,7 +53,7 @@ class Journal:
             self._file = path.open("r+" if path.exists() else "w", newline="")
             self._file.truncate(len(complete))
             self._file.seek(len(complete))
-        except (OSError, UnicodeDecodeError) as error:
+        except (OSError, ValueError, TypeError, csv.Error) as error:
             raise SweepError(f"cannot keep results in '{path}': {error}") from error
         self._writer = csv.DictWriter(self._file, self.header)
         if not complete:
@@ -63,13 +67,24 @@ class Journal:
         self.rows[int(row["run"])] = texts
 
     def save(self) -> None:
-        """Force the rows onto the disk."""
-        self._file.flush()
-        os.fsync(self._file.fileno())
+        """Force the rows onto the disk.
+
+        Raises:
+            SweepError: it is full, or gone; rows that were saved before stay.
+        """
+        try:
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise SweepError(
+                f"cannot keep results in '{self._path}': {error.strerror}; rows up to here are in "
+                "it, and the same command goes on from there"
+            ) from error
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Close the file; what could not be saved was told before."""
+        with contextlib.suppress(OSError):
+            self._file.close()
 
     def _accept(
         self, path: Path, header: Iterable[str], rows: Iterable[Mapping[str, Any]], scene: str
@@ -109,7 +124,11 @@ def read_parquet(path: Path) -> list[dict[str, Any]]:
 
 
 def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequence[str]) -> None:
-    """Write all rows as a table, numbers as numbers."""
+    """Write all rows as a table, numbers as numbers.
+
+    Raises:
+        SweepError: the disk is full, or gone.
+    """
     import pyarrow as pa  # comes along with Rerun
     from pyarrow import parquet
 
@@ -121,8 +140,14 @@ def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequenc
         else:
             columns[name] = [float(text) if text != "" else None for text in texts]
     part = path.with_suffix(".partial.parquet")
-    parquet.write_table(pa.table(columns), part)
-    part.replace(path)
+    try:
+        parquet.write_table(pa.table(columns), part)
+        part.replace(path)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise SweepError(
+            f"cannot write '{path}': {error}; all rows are kept, and the same command goes on"
+        ) from error
 
 
 def _as_texts(row: Mapping[str, Any]) -> dict[str, str]:

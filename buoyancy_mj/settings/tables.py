@@ -19,6 +19,8 @@ _PLAIN_TYPES = {
     str: "a text in quotes",
 }
 """Types that TOML has too, in words."""
+_PLURALS = {str: "words", float: "numbers"}
+"""Types of which TOML has lists, in words."""
 
 
 def build(cls: type[T], table: Mapping[str, Any], where: str, **values: Any) -> T:
@@ -84,14 +86,14 @@ def convert(value: Any, hint: Any, where: str) -> Any:
 
 def _convert_number(value: float, kind: type, where: str) -> float:
     """A number as a float or an int; a whole number may be written with a point."""
-    if math.isnan(value):
-        raise SceneError(f"{where} is nan; needed is {_describe(kind)}")
     try:
         number = float(value)
     except OverflowError:
         raise SceneError(
             f"{where} is {describe(value)}; needed is {_describe(kind)} below 1.8e308"
         ) from None
+    if math.isnan(number):
+        raise SceneError(f"{where} is nan; needed is {_describe(kind)}")
     if kind is float:
         return number
     if not number.is_integer():
@@ -121,5 +123,8 @@ def _describe(hint: Any) -> str:
     kind = _first_type(hint)
     if typing.get_origin(kind) is tuple:
         items = typing.get_args(kind)
-        return "a list of words" if items[-1] is Ellipsis else f"a list of {len(items)} numbers"
+        if items[-1] is not Ellipsis:
+            return f"a list of {len(items)} numbers"
+        plural = _PLURALS.get(items[0], f"lists of {len(typing.get_args(items[0]))} numbers")
+        return f"a list of {plural}"
     return _PLAIN_TYPES.get(kind, f"a table ({getattr(kind, '__name__', kind)})")

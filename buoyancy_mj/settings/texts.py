@@ -25,7 +25,9 @@ def parse_toml(text: str, where: str) -> dict[str, Any]:
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"{where} is no valid TOML: {error}") from error
     except (ValueError, RecursionError) as error:
-        raise SceneError(f"{where} is no TOML that can be read: {_explain(error)}") from error
+        raise SceneError(
+            f"{where} cannot be read: {_explain(error)}, near {_find_cause(text, error)}"
+        ) from error
 
 
 def parse_value(text: str, where: str) -> Any:
@@ -101,6 +103,15 @@ def format_table(
         if field.name not in leave_out and (defaults or item != field.default):
             words.append(f"{field.name}={format_value(item)}")
     return " ".join(words)
+
+
+def _find_cause(text: str, error: Exception) -> str:
+    """The line of a text that Python can most likely not read, and how it begins."""
+    suspects = "[{" if isinstance(error, RecursionError) else "0123456789"
+    lines = text.split("\n")
+    weights = [sum(line.count(suspect) for suspect in suspects) for line in lines]
+    number = weights.index(max(weights))
+    return f"line {number + 1}, which begins {describe(lines[number][:30])}"
 
 
 def _explain(error: Exception) -> str:
