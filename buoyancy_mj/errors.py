@@ -7,6 +7,7 @@ May import: nothing of this package.
 """
 
 import difflib
+import math
 import reprlib
 from collections.abc import Iterable
 
@@ -93,8 +94,7 @@ class _ShortRepr(reprlib.Repr):
         """A whole number; a long one by its digits, which Python refuses to write out."""
         if abs(x) < 10**30:
             return repr(x)
-        digits = int(x.bit_length() * 0.30103) + 1
-        return f"a whole number of about {digits} digits"
+        return f"a whole number of about {math.log10(2.0) * x.bit_length():.0f} digits"
 
 
 _REPR = _ShortRepr()

@@ -143,9 +143,9 @@ def check_texts(signature: inspect.Signature, values: Mapping[str, Any]) -> None
         value = values.get(parameter.name)
         for text in value if isinstance(value, list) else [value]:
             if isinstance(text, str | Path):
-                read_text(SceneError, _flag_of(parameter), str(text))
+                read_text(SceneError, flag_of(parameter), str(text))
             if isinstance(text, Path):
-                _check_length(_flag_of(parameter), text)
+                _check_length(flag_of(parameter), text)
 
 
 def _check_length(flag: str, path: Path) -> None:
@@ -186,7 +186,7 @@ def collect_flags(signature: inspect.Signature, values: Mapping[str, Any]) -> di
     return rest | arguments
 
 
-def _flag_of(parameter: inspect.Parameter) -> str:
+def flag_of(parameter: inspect.Parameter) -> str:
     """How users call a spread flag: '--set', or 'SCENE' for an argument."""
     (option,) = parameter.annotation.__metadata__
     if isinstance(option, typer.models.ArgumentInfo):

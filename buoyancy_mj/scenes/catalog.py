@@ -88,5 +88,6 @@ def _find(
             f"{', '.join(shipped)}"
         )
     raise error(
-        f"there is no {kind} {describe(name)}, neither a file nor one that ships; {choices(name, shipped)}"
+        f"there is no {kind} {describe(name)}, neither a file nor one that ships; "
+        f"{choices(name, shipped)}"
     )
