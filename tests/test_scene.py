@@ -122,7 +122,7 @@ def test_any_field_can_be_set(folder, setting, look):
         ("water.waves=3", "water: waves is 3; needed is a list of tables"),
         ("water=3", "water is 3; needed is a table"),
         ("water.density=-1", "density is -1.0; it must be above 0"),
-        ("duration=0", "duration is 0; it must be at least 1e-06 and at most 1e+06"),
+        ("duration=0", "duration is 0.0; it must be at least 1e-06 and at most 1e+06"),
         ("timestep=1e-310", "timestep is 1e-310; it must be at least 1e-07 and at most 1"),
         (
             "water.waves.0.kind=[1]",
@@ -141,10 +141,10 @@ def test_any_field_can_be_set(folder, setting, look):
         ),
         ("start.position=[1, 2]", "start: position is [1, 2]; needed is a list of 3 numbers"),
         ("start.position=[1, 2, nan]", "start: position is nan; needed is a number"),
-        ("start.roll=inf", "every number must be finite"),
+        ("start.roll=inf", "start: roll is inf; it must be a finite number"),
         (
             "damping.coefficient=-1",
-            "damping coefficient is -1.0; it must be a finite number of at least 0",
+            "damping coefficient is -1.0; it must be at least 0 and at most 1e+06",
         ),
         ("geoms=hull", "geoms is 'hull'; needed is a list of words"),
         ("duration", "'duration' is no setting; write KEY=VALUE"),

@@ -22,6 +22,7 @@ from buoyancy_mj.scenes.scene_vehicle import ENVIRONMENT, EQUILIBRIUM, SceneVehi
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec, read_spec
 from buoyancy_mj.scenes.start import place_vehicle, settle_vehicle
 from buoyancy_mj.scenes.vehicles import read_vehicle
+from buoyancy_mj.settings.config import has_texts
 
 
 class Assembly(NamedTuple):
@@ -47,7 +48,7 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     Args:
         scene: what to assemble.
         with_water: whether the scene's water becomes a part of the model. It does not where MuJoCo
-            would skip it there, see `skips_passive`.
+            would skip it there, see `skips_passive`, nor where it has no texts, see `has_texts`.
 
     Raises:
         ModelError: a file is missing, MuJoCo refuses it, or it has no body that could float; with
@@ -60,7 +61,7 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
-    if with_water and not skips_passive(spec.option.disableflags):
+    if with_water and has_texts(scene) and not skips_passive(spec.option.disableflags):
         # where the plugin cannot be, a warning on import has said so
         with contextlib.suppress(EngineError):
             add_water(spec, scene)

@@ -2,8 +2,9 @@
 
 from typing import Any
 
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import SceneError, SceneTypeError, describe
 from buoyancy_mj.settings.texts import parse_value
+from buoyancy_mj.values import read_text
 
 _VECTORS = (
     "cog_shift",
@@ -27,10 +28,12 @@ def apply_setting(table: dict[str, Any], setting: str) -> None:
     key, equals, text = setting.partition("=")
     if not equals or not key.strip():
         raise SceneError(
-            f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2"
+            f"{describe(setting)} is no setting; write KEY=VALUE, for example duration=3 or "
+            "water.level=0.2"
         )
-    value = parse_value(text)
-    *path, last = key.strip().split(".")
+    key = read_text(SceneError, "the key of a setting", key.strip())
+    value = parse_value(text, key)
+    *path, last = key.split(".")
     if _is_vector(path):
         _add_vector(table, path)
 
@@ -45,7 +48,9 @@ def apply_setting(table: dict[str, Any], setting: str) -> None:
     elif isinstance(holder, dict):
         holder[last] = value
     else:
-        raise SceneError(f"cannot set '{key}': '{'.'.join(path)}' is {holder!r}, no table")
+        raise SceneTypeError(
+            f"cannot set '{key}': '{'.'.join(path)}' is {describe(holder)}, no table"
+        )
 
 
 def _is_vector(path: list[str]) -> bool:
@@ -69,12 +74,15 @@ def _step(holder: Any, part: str, key: str) -> Any:
     if isinstance(holder, list):
         return holder[_index(holder, part, key)]
     if not isinstance(holder, dict):
-        raise SceneError(f"cannot set '{key}': it lies in {holder!r}, no table")
+        raise SceneTypeError(f"cannot set '{key}': it lies in {describe(holder)}, no table")
     return holder.setdefault(part, {})
 
 
 def _index(entries: list[Any], part: str, key: str) -> int:
     """The place in a list that one part of a path names."""
-    if not (part.isascii() and part.isdigit()) or int(part) >= len(entries):
-        raise SceneError(f"cannot set '{key}': the list has {len(entries)} entries, counted from 0")
-    return int(part)
+    places = {str(place): place for place in range(len(entries))}
+    if part not in places:
+        raise SceneTypeError(
+            f"cannot set '{key}': the list has {len(entries)} entries, counted from 0"
+        )
+    return places[part]

@@ -1,14 +1,13 @@
 """`Scene`: all that one run needs, read from TOML and validated."""
 
 import dataclasses
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import mujoco
 
-from buoyancy_mj.errors import SceneError, choices
+from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.scenes.overrides import apply_setting
 from buoyancy_mj.scenes.scene_vehicle import (
@@ -23,12 +22,14 @@ from buoyancy_mj.scenes.scene_vehicle import (
 from buoyancy_mj.settings.config import SELECTION
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.tables import build
+from buoyancy_mj.settings.texts import parse_toml
 from buoyancy_mj.settings.toml import (
     damping_from_table,
     method_from_table,
     selection_from_table,
     water_from_table,
 )
+from buoyancy_mj.values import set_number
 
 INTEGRATORS = {
     name.removeprefix("mjINT_").lower(): integrator
@@ -87,12 +88,8 @@ class Scene(Settings):
             ("timestep", 1e-7, 1.0),
             ("record_rate", 1e-6, 1e5),
         ):
-            value = getattr(self, name)
-            if not least <= value <= most:
-                raise SceneError(
-                    f"{name} is {value:g}; it must be at least {least:g} and at most {most:g}"
-                )
-        check_masses(self.mass, self.cog_shift)
+            set_number(self, SceneError, name, least=least, most=most)
+        check_masses(self)
         self._check_vehicles()
         object.__setattr__(self, "vehicles", name_vehicles(self.vehicles))
         if self.integrator.lower() not in INTEGRATORS:
@@ -146,6 +143,8 @@ KEYS = (
     *SELECTION,
 )
 """Keys of a scene's file."""
+_RENAMED = {"drag": "damping"}
+"""Keys that have another name now."""
 
 
 def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
@@ -159,12 +158,10 @@ def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
         SceneError: the file or a setting cannot be read, or says something that makes no sense.
     """
     try:
-        text = path.read_text()
-        table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(f"scene '{path}' is no valid TOML: {error}") from error
-    except (OSError, UnicodeDecodeError) as error:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
         raise SceneError(f"cannot read scene '{path}': {error}") from error
+    table = parse_toml(text, f"scene '{path}'")
     stem = path.stem
     vehicle, title = table.get("vehicle"), table.get("title")
     for setting in settings:
@@ -216,5 +213,8 @@ def scene_from_table(
     # the error for an unknown key lists all keys of a file, those of inner tables too
     for key in plain:
         if key not in KEYS:
-            raise SceneError(f"{where}: unknown key '{key}'; {choices(key, KEYS)}")
+            hint = f"it is '{_RENAMED[key]}' now; " if key in _RENAMED else ""
+            raise SceneTypeError(
+                f"{where}: unknown key {describe(key)}; {hint}{choices(key, KEYS)}"
+            )
     return build(Scene, plain, where, **fields)

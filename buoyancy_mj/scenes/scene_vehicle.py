@@ -1,16 +1,16 @@
 """What a scene says of each of its vehicles: `Start` and `SceneVehicle`."""
 
 import dataclasses
-import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from buoyancy_mj.errors import SceneError, choices
+from buoyancy_mj.errors import SceneError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.settings.tables import build
 from buoyancy_mj.settings.toml import table_of
+from buoyancy_mj.values import read_array, set_number
 
 EQUILIBRIUM = "equilibrium"
 """Value of `Start.at`."""
@@ -23,7 +23,7 @@ class Start:
     """Pose and velocity of the vehicle at the start.
 
     Raises:
-        SceneError: a value that is not finite.
+        SceneError: a value that is no finite number, or a vector that is not of three.
     """
 
     position: tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -46,11 +46,14 @@ class Start:
 
     def __post_init__(self) -> None:
         if self.at not in (None, EQUILIBRIUM):
-            raise SceneError(f"start.at is '{self.at}'; possible: {EQUILIBRIUM}, or leave it out")
-        angles = self.roll, self.pitch, self.yaw
-        numbers = (*self.position, *angles, *self.velocity, *self.angular_velocity)
-        if not all(math.isfinite(number) for number in numbers):
-            raise SceneError(f"start holds {numbers}; every number must be finite")
+            raise SceneError(
+                f"start.at is {describe(self.at)}; possible: {EQUILIBRIUM}, or leave it out"
+            )
+        for name in ("roll", "pitch", "yaw"):
+            set_number(self, SceneError, name)
+        for name in ("position", "velocity", "angular_velocity"):
+            vector = read_array(SceneError, name, getattr(self, name), (3,))
+            object.__setattr__(self, name, tuple(vector.tolist()))
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -78,7 +81,7 @@ class SceneVehicle:
     states none."""
 
     def __post_init__(self) -> None:
-        check_masses(self.mass, self.cog_shift)
+        check_masses(self)
         if self.name is not None and not re.fullmatch(r"[\w-]+", self.name):
             raise SceneError(
                 f"name is '{self.name}'; it must be of letters, digits, '_' and '-', and not empty"
@@ -157,12 +160,16 @@ def read_inner_tables(plain: dict[str, Any], where: str) -> dict[str, Any]:
     return fields
 
 
-def check_masses(mass: float | None, cog_shift: tuple[float, float, float]) -> None:
-    """Refuse a mass that is not positive, and a shift that is not finite."""
-    if mass is not None and not 0.0 < mass < math.inf:
-        raise SceneError(f"mass is {mass:g} kg; it must be positive")
-    if not all(math.isfinite(shift) for shift in cog_shift):
-        raise SceneError(f"cog_shift is {cog_shift}; every number must be finite")
+def check_masses(owner: Any) -> None:
+    """Check and convert the fields `mass` and `cog_shift` of a frozen dataclass.
+
+    Raises:
+        SceneError: a mass that is not positive, or a shift that is not of three finite numbers.
+    """
+    if owner.mass is not None:
+        set_number(owner, SceneError, "mass", above=0.0)
+    shift = read_array(SceneError, "cog_shift", owner.cog_shift, (3,))
+    object.__setattr__(owner, "cog_shift", tuple(shift.tolist()))
 
 
 def name_from_file(model: str) -> str:

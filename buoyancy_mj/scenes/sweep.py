@@ -8,7 +8,13 @@ from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, SceneError, SweepError
+from buoyancy_mj.errors import (
+    BuoyancyError,
+    BuoyancyWarning,
+    SceneError,
+    SceneTypeError,
+    SweepError,
+)
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.batches import run_simulations
@@ -138,12 +144,14 @@ class Sweep:
                 )
 
     def _check_keys(self) -> None:
-        """Refuse a key that the scene lacks: every run would fail for it."""
+        """Refuse a key that the scene lacks, or that takes no numbers: every run would fail."""
         try:
             self._read_scene(0)
-        except SceneError as error:
-            if "unknown key" in str(error):
-                raise
+        except SceneTypeError:
+            raise
+        except SceneError:
+            # other values may make sense
+            return
 
     def _read_scene(self, run: int) -> Scene:
         """The scene with the values of one run."""
