@@ -91,6 +91,8 @@ def test_ground_at_the_level_of_the_water_is_left_out_and_told_whatever_its_shap
         (SLAB.format(z=2.0), ""),
         # a beach far off
         (ISLAND.format(z=-0.5), TERRAIN.format(heights="0 0 9 0 0 9 0 0 9")),
+        # a signed distance field
+        ('<geom name="g" type="sdf" mesh="m" pos="0 0 -.5"/>', PRISM),
         # what touches nothing
         (SLAB.format(z=-0.5).replace("/>", ' contype="0" conaffinity="0"/>'), ""),
         ('<geom name="g" type="plane" size="1 1 1" contype="0" conaffinity="0"/>', ""),

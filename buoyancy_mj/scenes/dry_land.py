@@ -24,8 +24,8 @@ from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import geom_kind, geom_name
 from buoyancy_mj.scenes.specs import compile_spec
 
-_PLANE, _HEIGHT_FIELD, _MESH = (
-    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "HFIELD", "MESH")
+_PLANE, _HEIGHT_FIELD, _MESH, _SDF = (
+    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "HFIELD", "MESH", "SDF")
 )
 _GEOM = mujoco.mjtObj.mjOBJ_GEOM
 _LEVEL_COSINE = 0.95
@@ -196,6 +196,9 @@ def _find_heights(
     turn, middle = data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
     if kind == _PLANE:
         return np.full(len(points), middle[2] if turn[2, 2] > _LEVEL_COSINE else -np.inf)
+    if kind == _SDF:
+        # it is no ground: its contacts are with the surface that it draws
+        return np.full(len(points), -np.inf)
     if kind == _MESH:
         return _find_hull_heights(_list_vertices(model, geom) @ turn.T + middle, points)
 
