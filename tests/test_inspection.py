@@ -196,7 +196,7 @@ def test_thin_walls_open_to_the_sea_are_told():
     )
     assert part.mesh is not None
     assert "its walls are about 4.95 mm thick and it displaces" in text
-    assert "--hull convex" in text
+    assert "or take its convex hull (--hull '" in text
 
 
 def test_a_refused_mesh_is_named_and_the_rest_goes_on():
@@ -222,7 +222,7 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
     assert keel.mesh is not None
     (problem,) = found.problems
     assert "mesh 'tub' of geom 'tub': it is open: 1 hole(s) with 4 edges" in problem
-    assert "take its convex hull (--hull convex), or leave the geom out (--geoms)" in problem
+    assert "close the mesh, take its convex hull (--hull 'tub=convex', in Python" in problem
     (floating,) = found.vessels
     assert floating.total.displacement == pytest.approx(8.0)
     # and nothing is said of how the vessel floats without it

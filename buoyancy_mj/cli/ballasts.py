@@ -1,14 +1,19 @@
 """`ballast`: the least mass that brings a model to a draft and attitude."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import out, print_line
-from buoyancy_mj.cli.flags import ModelArgument, SelectionFlags, WaterOption, parse_still_water
+from buoyancy_mj.cli.console import out, print_line, quote_path
+from buoyancy_mj.cli.flags import (
+    ModelArgument,
+    SelectionFlags,
+    WaterOption,
+    check_file_name,
+    parse_still_water,
+)
 from buoyancy_mj.hulls.mjcf import write_mjcf
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import compile_spec
@@ -54,6 +59,7 @@ def ballast_(
 
     Instead of a draft, --reserve asks for a lift under water, and 0 for neutral buoyancy.
     """
+    check_file_name("--out", out_file)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     result = ballast(
@@ -78,4 +84,4 @@ def ballast_(
     )
     if out_file is not None:
         result.add_to(spec)
-        print_line(out, f"written: {shlex.quote(str(write_mjcf(spec, out_file)))}")
+        print_line(out, f"written: {quote_path(write_mjcf(spec, out_file))}")

@@ -77,7 +77,7 @@ class AppliedRows:
     def find_others(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """The rows (n, 6) that others want.
 
-        A row that the water wrote still has the others' part that it had then. A row that is
+        A number that the water wrote still has the others' part that it had then. A number that is
         another now was assigned by others since. Without a seal, all were.
 
         Raises:
@@ -98,8 +98,7 @@ class AppliedRows:
                 "and the two cannot be told apart any more: set xfrc_applied to 0, then to those "
                 "forces"
             )
-        same = (rows.view(np.int64) == before.view(np.int64)).all(axis=1, keepdims=True)
-        return np.where(same, then, rows)
+        return np.where(rows.view(np.int64) == before.view(np.int64), then, rows)
 
     def _digest(self, rows: NDArray[np.float64]) -> Digest:
         """A hash (16 bytes) of rows and of the bodies that they are of."""

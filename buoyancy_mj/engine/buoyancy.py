@@ -1,6 +1,5 @@
 """`Buoyancy`: the water that acts on the bodies of one MuJoCo model."""
 
-import collections
 import contextlib
 import functools
 from collections.abc import Iterator, Sequence
@@ -10,26 +9,25 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine import callbacks, passes
-from buoyancy_mj.engine.applied import AppliedRows
+from buoyancy_mj.engine import callbacks
+from buoyancy_mj.engine.acting import ActingWater
 from buoyancy_mj.engine.checks import (
     check_actuation,
     check_applied,
     check_data,
     check_sleep,
     check_waves,
+    warn_of_no_volume,
 )
 from buoyancy_mj.engine.compiled import CompiledWater
-from buoyancy_mj.engine.forks import make_lock
-from buoyancy_mj.engine.load_model import build_load_model
+from buoyancy_mj.engine.readout import read_loads
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.kernels import clip, wrenches
 from buoyancy_mj.kernels.inertia import AddedMass
-from buoyancy_mj.kernels.passes import DATA, Record
-from buoyancy_mj.loads.loads import Loads, Portion
+from buoyancy_mj.kernels.passes import Record
+from buoyancy_mj.loads.loads import Loads
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.settings import Options, Settings, combine_settings
@@ -90,44 +88,38 @@ class Buoyancy(ReadOnly):
 
         # the hulls, and what acts on them
         self._chosen = bodies
-        self._load_model = build_load_model(model, self.settings, bodies)
+        self._acting = ActingWater(model, self.settings, bodies)
         check_waves(model, self.water, self.hulls)
+        warn_of_no_volume(model)
 
         # the bodies
-        self.bodies = np.unique(self._load_model.arrays.owners)
+        self.bodies = self._acting.load_model.arrays.bodies
         """Indices of the bodies that have hulls."""
         groups = group_floating_bodies(model)
         afloat = [group for group in groups if np.isin(group, self.bodies).any()]
         self.floating = np.sort(np.concatenate(afloat))
         """Indices of all bodies that float, and of those that they carry: the vehicles."""
-
-        # what a step writes to; threads that share this object take turns
-        self._lock = make_lock()
-        self._applied = AppliedRows(self.bodies)
-        self._table = np.zeros(1, np.int64)
-        self._outdated: collections.deque[CompiledWater] = collections.deque(maxlen=4)
-        self._make_room()
         self._seal("make another Buoyancy(model, water, ...)", Buoyancy)
 
     @property
     def hulls(self) -> tuple[Hull, ...]:
         """The hulls, in the order of the model's geoms, as they were measured last."""
-        return self._load_model.hulls
+        return self._acting.load_model.hulls
 
     @property
     def packed(self) -> Packed:
         """The hulls as the method keeps them, ready to be submerged again and again."""
-        return self._load_model.packed
+        return self._acting.load_model.packed
 
     @property
     def added_mass(self) -> AddedMass:
         """Added mass of those bodies that have one."""
-        return self._load_model.arrays.added_mass
+        return self._acting.load_model.arrays.added_mass
 
     @property
     def causes(self) -> tuple[str, ...]:
         """Names of the loads that act."""
-        return self._load_model.causes
+        return self._acting.load_model.causes
 
     def __repr__(self) -> str:
         volume = sum(hull.displaced_volume for hull in self.hulls)
@@ -148,7 +140,7 @@ class Buoyancy(ReadOnly):
         It has the signature of an `mjcb_control`, and may be called between mj_step1 and mj_step2.
         Data of other models are left alone. A second call in the same pass replaces the first.
         """
-        if model._address == self.model._address and not callbacks.is_installed(self):
+        if model._address == self.model._address and not callbacks.is_installed(self._acting):
             self.act(data)
 
     @contextlib.contextmanager
@@ -191,7 +183,7 @@ class Buoyancy(ReadOnly):
         """
         if through == callbacks.APPLIED:
             check_applied(self.model, self.causes)
-        with callbacks.install(self, native, through=through, copies=copies):
+        with callbacks.install(self._acting, native, through=through, copies=copies):
             yield self
 
     def act(self, data: mujoco.MjData) -> None:
@@ -200,26 +192,7 @@ class Buoyancy(ReadOnly):
         Raises:
             ModelError: the data are of another model.
         """
-        with self._lock:
-            last = self._pass_over(data)
-            passes.apply(self._load_model, self.model, data, last)
-
-    def act_on_bodies(self, data: mujoco.MjData) -> None:
-        """Put the wrenches into `data.xfrc_applied`, as `installed` does through it.
-
-        Raises:
-            ModelError: the data are of another model.
-            EngineError: see `external`.
-        """
-        with self._lock:
-            last = self._pass_over(data)
-            self._applied.assign(data, last.record.total)
-            passes.augment(self._load_model, self.model, data, last)
-
-    def leave_bodies(self) -> None:
-        """Take the water out of `xfrc_applied` of all data that it was put into."""
-        with self._lock:
-            self._applied.take_out_everywhere()
+        self._acting.act(data)
 
     def external(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """`data.xfrc_applied` (nbody, 6) without the water, until the next pass puts it back.
@@ -236,9 +209,7 @@ class Buoyancy(ReadOnly):
         Example:
             `buoyancy.external(data)[body, :3] += [10.0, 0.0, 0.0]`
         """
-        check_data(self.model, data)
-        with self._lock:
-            self._applied.take_out(data)
+        self._acting.leave_bodies(data)
         rows: NDArray[np.float64] = data.xfrc_applied
         return rows
 
@@ -251,12 +222,8 @@ class Buoyancy(ReadOnly):
         Raises:
             ModelError: the data are of another model.
         """
-        check_data(self.model, data)
-        with self._lock:
-            self._measure_resized()
-            # as a separate run, so that what the callback carries between steps stays untouched
-            self._evaluate(data, -data._address, self._looked)
-            return self.loads_of(self._looked, data)
+        with self._acting.lock:
+            return self._read(self._acting.look(data), data)
 
     def loads(self, data: mujoco.MjData) -> Loads:
         """The loads that acted in the last pass over `data`, at the poses of that pass.
@@ -268,115 +235,34 @@ class Buoyancy(ReadOnly):
             ModelError: the data are of another model.
             EngineError: none acted on these data so far, or 64 others were stepped since.
         """
-        check_data(self.model, data)
-        with self._lock:
-            record = (
-                self.compiled.last_record(data._address) if "compiled" in self.__dict__ else None
-            )
+        with self._acting.lock:
+            record = self._acting.last_record(data)
             if record is None:
-                record = self._recent.find(data._address)
-            # a pass lies no more than a step back; an older one was of other data at the address
-            if (
-                record is None
-                or not abs(data.time - record.instant[0]) <= 1.001 * self.model.opt.timestep
-            ):
                 raise EngineError(
                     f"this water has not acted on these data at their time, {data.time:g} s; "
                     "step them while it acts, call mj_forward, or use evaluate"
                 )
-            return self.loads_of(record, data)
+            return self._read(record, data)
 
-    def loads_of(self, record: Record, data: mujoco.MjData) -> Loads:
-        """What a record holds, as copies; its `data` still hold the poses."""
-        owners = self._load_model.arrays.owners
-        wet, centres, rows = record.wet.copy(), record.centres.copy(), record.total.copy()
-        xipos = data.xipos
-        weight = self.water.density * self.gravity
-        if self._load_model.has_wave_pressure:
-            force, about = weight * record.heads[:, :3], weight * record.heads[:, 3:]
-            origins = data.geom_xpos[[hull.geom for hull in self.hulls]]
-            torque = about + np.cross(origins - xipos[owners], force)
-        else:
-            force = np.zeros((len(self.hulls), 3))
-            force[:, 2] = weight * wet[:, clip.VOLUME]
-            arm = np.where(force[:, 2:] > 0.0, wet[:, clip.CENTROID] - xipos[owners], 0.0)
-            torque = np.cross(arm, force)
-        hull = Portion(wet[:, clip.VOLUME], wet[:, clip.CENTROID], force, torque)
-        body = Portion(centres[:, 0], centres[:, 1:], rows[:, :3], rows[:, 3:])
-        everything = np.empty((1, 4))
-        wrenches.merge(wet, np.zeros(len(wet), np.int64), everything)
-        torque = body.torque + np.cross(xipos - self.centre_of_mass(data), body.force)
-        total = Portion(
-            everything[0, 0], everything[0, 1:], body.force.sum(axis=0), torque.sum(axis=0)
-        )
-        return Loads(
-            names=tuple(hull.name for hull in self.hulls),
-            hull=hull,
-            body=body,
-            total=total,
-            wetted_area=wet[:, clip.WETTED_AREA],
-            waterplane_area=wet[:, clip.WATERPLANE_AREA],
-            by_cause={cause: getattr(record.causes, cause).copy() for cause in self.causes},
-        )
-
-    def record(self) -> Record:
-        """Room for what one evaluation leaves."""
-        return self._load_model.record(self.model.nbody, self.model.nC)
-
-    @functools.cached_property
+    @property
     def compiled(self) -> CompiledWater:
         """What compiled code needs of this water.
 
         Raises:
             EngineError: this MuJoCo is not as expected inside.
         """
-        water = CompiledWater(self.model, self._load_model, self._lock, self._measure_resized)
-        self._table[0] = water.address
-        return water
-
-    @property
-    def handle(self) -> int:
-        """Address of the word that holds the address of the table of `compiled`."""
-        return self._table.ctypes.data
+        return self._acting.compiled
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """Centre of mass (3,) [m] of the floating bodies, world frame."""
-        masses = self.model.body_mass[self.floating]
+        """Centre of mass (3,) [m] of the floating bodies, world frame.
+
+        Raises:
+            ModelError: the data are of another model.
+        """
+        check_data(self.model, data)
+        masses = data.model.body_mass[self.floating]
         centre: NDArray[np.float64] = masses @ data.xipos[self.floating] / masses.sum()
         return centre
-
-    def _pass_over(self, data: mujoco.MjData) -> passes.Pass:
-        """Evaluate the loads for the callback, and keep them as those of the last pass."""
-        check_data(self.model, data)
-        self._measure_resized()
-        last = self._recent.take(data._address)
-        last.record.ids[DATA] = 0
-        self._evaluate(data, data._address, last.record)
-        last.record.ids[DATA] = data._address
-        if "compiled" in self.__dict__:
-            self.compiled.forget(data._address)
-        return last
-
-    def _evaluate(self, data: mujoco.MjData, run: int, record: Record) -> None:
-        passes.evaluate(self._load_model, self.model, data, self.gravity, run, record)
-
-    def _measure_resized(self) -> None:
-        """Measure the hulls again if the model's geoms have other sizes than they had then."""
-        if self.model.geom_size.tobytes() == self._load_model.sizes:
-            return
-        with self._lock:
-            self._load_model = build_load_model(self.model, self.settings, self._chosen)
-            self._make_room()
-            # compiled code may be in it still
-            outdated = self.__dict__.pop("compiled", None)
-            if outdated is not None:
-                self._outdated.append(outdated)
-                self.compiled  # noqa: B018
-
-    def _make_room(self) -> None:
-        """Make room for what passes leave."""
-        self._looked = self.record()
-        self._recent = passes.RecentPasses(self.record, self.model.nv)
 
     @property
     def gravity(self) -> float:
@@ -386,3 +272,8 @@ class Buoyancy(ReadOnly):
             ModelError: it is not along -z.
         """
         return read_gravity(self.model)
+
+    def _read(self, record: Record, data: mujoco.MjData) -> Loads:
+        """What a record holds; its data still hold the poses."""
+        centre = self.centre_of_mass(data)
+        return read_loads(self._acting.load_model, record, data, self.gravity, centre)

@@ -9,10 +9,11 @@ import collections
 import contextlib
 import warnings
 from collections.abc import Callable, Iterator
-from typing import Any, Protocol
+from typing import Any
 
 import mujoco
 
+from buoyancy_mj.engine.acting import ActingWater
 from buoyancy_mj.engine.checks import check_actuation, skips_passive
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.forks import make_lock
@@ -32,38 +33,13 @@ _left: collections.deque[CompiledWater] = collections.deque(maxlen=8)
 """Waters that left last: threads may still be in a pass of theirs."""
 
 
-class Installable(Protocol):
-    """Water that can act as a callback."""
-
-    model: mujoco.MjModel
-
-    @property
-    def compiled(self) -> CompiledWater:
-        """What compiled code needs of this water."""
-        ...
-
-    @property
-    def handle(self) -> int:
-        """Address of the word that holds the address of the compiled water's table."""
-        ...
-
-    def act(self, data: mujoco.MjData) -> None:
-        """Add the water's forces to the passive forces of `data`, in Python."""
-        ...
-
-    def act_on_bodies(self, data: mujoco.MjData) -> None:
-        """Put the water's wrenches into `xfrc_applied` of `data`, in Python."""
-        ...
-
-    def leave_bodies(self) -> None:
-        """Take the water out of `xfrc_applied` of all data again."""
-        ...
-
-
 class _Installed:
     """A water that acts as a callback."""
 
-    def __init__(self, water: Installable, through: str, slot: str) -> None:
+    copies = False
+    """Whether it acts on copies of the water's model too."""
+
+    def __init__(self, water: ActingWater, through: str, slot: str) -> None:
         self.water, self.through, self.slot = water, through, slot
         self.blocks = 1
         """How many `with` blocks it is lent for."""
@@ -84,7 +60,7 @@ class _Compiled(_Installed):
     """A water that acts as a C function."""
 
     def __init__(
-        self, water: Installable, through: str, slot: str, previous: Any, *, copies: bool
+        self, water: ActingWater, through: str, slot: str, previous: Any, *, copies: bool
     ) -> None:
         super().__init__(water, through, slot)
         # made here, so that an engine it does not know is refused before anything is lent
@@ -93,6 +69,7 @@ class _Compiled(_Installed):
         self.function = self._leased.function
         self.follow(previous)
         self._leased.lend(water.handle, copies=copies)
+        self.copies = copies
 
     def follow(self, previous: Any) -> None:
         super().follow(previous)
@@ -108,7 +85,7 @@ class _Compiled(_Installed):
 class _InPython(_Installed):
     """A water that acts as a Python function."""
 
-    def __init__(self, water: Installable, through: str, slot: str, previous: Any) -> None:
+    def __init__(self, water: ActingWater, through: str, slot: str, previous: Any) -> None:
         super().__init__(water, through, slot)
         self._act: Callable[[mujoco.MjData], None] | None
         self._act = water.act_on_bodies if through == APPLIED else water.act
@@ -125,14 +102,15 @@ class _InPython(_Installed):
             act(data)
 
     def leave(self) -> None:
-        self._act = None
+        # a bound method would keep the water alive
+        self._act = self.function = None
         if self.through == APPLIED:
             self.water.leave_bodies()
 
 
 @contextlib.contextmanager
 def install(
-    water: Installable, native: bool | None, *, through: str, copies: bool
+    water: ActingWater, native: bool | None, *, through: str, copies: bool
 ) -> Iterator[None]:
     """Install a water as a callback of MuJoCo, and take it out of the chain at the end.
 
@@ -161,12 +139,8 @@ def install(
         installed = _find(water)
         if installed is None:
             installed = _enter(water, native, through, copies=copies)
-        elif installed.through != through:
-            raise EngineError(
-                f"this water acts through {installed.through} already, and would act twice "
-                f"through {through}: leave the other `installed` first"
-            )
         else:
+            _check_alike(installed, native, through, copies=copies)
             installed.blocks += 1
     try:
         yield
@@ -177,13 +151,13 @@ def install(
                 _leave(installed)
 
 
-def is_installed(water: Installable) -> bool:
+def is_installed(water: ActingWater) -> bool:
     """Whether MuJoCo has a callback of this water now."""
     with _LOCK:
         return _find(water) is not None
 
 
-def _find(water: Installable) -> _Installed | None:
+def _find(water: ActingWater) -> _Installed | None:
     """The link of a water in one of the chains that start at MuJoCo's callbacks; None without."""
     for slot in ("passive", "control"):
         function = _get(slot)
@@ -194,7 +168,24 @@ def _find(water: Installable) -> _Installed | None:
     return None
 
 
-def _enter(water: Installable, native: bool | None, through: str, *, copies: bool) -> _Installed:
+def _check_alike(installed: _Installed, native: bool | None, through: str, *, copies: bool) -> None:
+    """Refuse to install a water in another way than it is installed already."""
+    has_code = isinstance(installed, _Compiled)
+    if installed.through != through:
+        now, then = f"through {installed.through}", f"through {through}"
+    elif native is not None and native != has_code:
+        now, then = ("compiled", "in Python") if has_code else ("in Python", "compiled")
+    elif copies and not installed.copies:
+        now, then = "on its own model alone", "on copies"
+    else:
+        return
+    raise EngineError(
+        f"this water is installed already and acts {now}, which a block inside cannot change: "
+        f"ask for it to act {then} in the outer `installed`"
+    )
+
+
+def _enter(water: ActingWater, native: bool | None, through: str, *, copies: bool) -> _Installed:
     """Put a water at the head of a chain."""
     late = through == APPLIED or skips_passive(water.model.opt.disableflags)
     slot = "control" if late else "passive"
@@ -234,7 +225,7 @@ def _leave(link: _Installed) -> None:
 
 
 def _try_compiled(
-    water: Installable, native: bool | None, through: str, slot: str, previous: Any, *, copies: bool
+    water: ActingWater, native: bool | None, through: str, slot: str, previous: Any, *, copies: bool
 ) -> _Compiled | None:
     """The water as a C function; None where Python serves, or must."""
     try:
@@ -261,7 +252,8 @@ def _try_compiled(
 
 def _link(function: Any) -> _Installed | None:
     """The water that acts in a callback; None if none of ours does."""
-    return next((link for link in _lent if link.function is function), None)
+    # a copy: the end of a generator may change the list at any time
+    return next((link for link in tuple(_lent) if link.function is function), None)
 
 
 def _get(slot: str) -> Any:

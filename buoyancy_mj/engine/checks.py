@@ -1,4 +1,4 @@
-"""Checks of a model before water acts on it: flags of MuJoCo, and the depth under the waves."""
+"""Checks of a model before water acts on it: MuJoCo's flags, what has no volume, shallow waves."""
 
 import math
 import warnings
@@ -8,11 +8,12 @@ import mujoco
 import numpy as np
 
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
-from buoyancy_mj.hulls.bodies import group_floating_bodies
+from buoyancy_mj.hulls.bodies import find_moving_bodies, group_floating_bodies
 from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
 from buoyancy_mj.hulls.tethers import find_tether
+from buoyancy_mj.hulls.verdicts import SOLID_TYPES
 from buoyancy_mj.kernels.waves import DEPTH
 from buoyancy_mj.sea.water import Water
 
@@ -100,6 +101,32 @@ def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
             f"these data are of another model than this water's "
             f"({', '.join(other) or 'of the same sizes'}): make them of it, "
             "mujoco.MjData(buoyancy.model), or make a Buoyancy of their model"
+        )
+
+
+def warn_of_no_volume(model: mujoco.MjModel) -> None:
+    """Name what moves with bodies and can displace no water: flexes, skins, distance fields."""
+    moving = find_moving_bodies(model)
+    things = [
+        f"{kind} '{mujoco.mj_id2name(model, object_type, i) or i}'"
+        for kind, object_type, count in (
+            ("flex", mujoco.mjtObj.mjOBJ_FLEX, model.nflex),
+            ("skin", mujoco.mjtObj.mjOBJ_SKIN, model.nskin),
+        )
+        for i in range(count)
+    ]
+    things += [
+        f"{geom_kind(model, geom)} '{geom_name(model, geom)}'"
+        for geom in range(model.ngeom)
+        if moving[model.geom_bodyid[geom]] and model.geom_type[geom] not in SOLID_TYPES
+    ]
+    if things:
+        displace = "displaces" if len(things) == 1 else "displace"
+        warnings.warn(
+            f"{', '.join(things)} {displace} no water: only geoms of the types mesh, box, sphere, "
+            "ellipsoid, capsule and cylinder do",
+            BuoyancyWarning,
+            stacklevel=3,
         )
 
 

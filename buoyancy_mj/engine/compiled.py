@@ -45,6 +45,7 @@ class CompiledWater:
         load_model: LoadModel,
         lock: threading.RLock,
         measure: Callable[[], None],
+        handle: NDArray[np.int64],
     ) -> None:
         """Gather it.
 
@@ -53,6 +54,7 @@ class CompiledWater:
             load_model: what acts on it; hulls of `Exact` are submerged by compiled code.
             lock: held while hulls are submerged by Python code.
             measure: called when the model's geoms have other sizes than those of `load_model`.
+            handle: a word (1,) that is set to the address of the water's table.
 
         Raises:
             EngineError: see `require_known_layout`.
@@ -76,7 +78,7 @@ class CompiledWater:
         links = Links(
             model=model._address,
             signature=model.signature,
-            sizes=sum_sizes(model.geom_size.view(np.int64)),
+            sizes=sum_sizes(np.frombuffer(load_model.sizes, np.int64).copy().reshape(-1, 3)),
             measure=address_of(self._measure),
             sizes_text=ctypes.addressof(self._sizes_text),
             act=compile_kernel(passive.act).address,
@@ -118,6 +120,8 @@ class CompiledWater:
         )
         self.address = self._table.address
         """Of the table of the water."""
+        self._handle = handle
+        self._handle[0] = self.address
         self._records: list[Table[Record]] = []
         self._room = 16
         _WATERS.add(self)

@@ -14,10 +14,12 @@ MODEL_ARRAYS = (
     "geom_size", "geom_pos", "geom_quat",
     "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
     "body_parentid", "body_weldid", "body_pos", "body_quat", "body_plugin",
+    "body_dofnum", "jnt_type", "jnt_bodyid", "M_rownnz",
+    "eq_type", "eq_objtype", "eq_obj1id", "eq_obj2id", "eq_active0", "site_bodyid",
     "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
     "names", "plugin", "plugin_attr",
 )  # fmt: skip
-"""Arrays of mjModel from which the hulls and their drag are made.
+"""Arrays of mjModel from which the hulls, their loads and the room for them are made.
 
 Models that agree in them share a water. Masses, the timestep and all else that matters are read
 anew in each pass."""

@@ -23,6 +23,7 @@ import mujoco
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.engine.instances import PLUGIN, find_instance
+from buoyancy_mj.engine.pickles import pickle_with_water
 from buoyancy_mj.engine.registration import register
 from buoyancy_mj.engine.waters import find_water, remember_settings
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError
@@ -109,6 +110,7 @@ def water_in(model: mujoco.MjModel, instance: str | None = None) -> Buoyancy:
 
 try:
     register()
+    pickle_with_water()
 except EngineError as _error:
     warnings.warn(
         f"models cannot bring their own water here: {_error}", BuoyancyWarning, stacklevel=2

@@ -48,9 +48,10 @@ def _resolve(model: int, data: int, instance: int) -> None:
         if record and compiled.read_ids(record)[WATER] == water.address:
             compiled.read_ids(record)[MODEL] = model
             return
+        # in this order, for Ctrl-C may come between
+        _WORD.from_address(slot).value = water.record(model).address
         if record:
             compiled.read_ids(record)[ALIVE] = 0
-        _WORD.from_address(slot).value = water.record(model).address
 
 
 class _Plugin(ctypes.Structure):

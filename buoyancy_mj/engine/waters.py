@@ -1,5 +1,6 @@
 """Waters of models that bring their own; models that agree in what it is made of share one."""
 
+import collections
 import contextlib
 import dataclasses
 import threading
@@ -29,7 +30,7 @@ MOST_SETTINGS = 1024
 
 LOCK = make_lock()
 """Held while a water is looked up, made or attached to data: MuJoCo may ask from any thread."""
-_waters: dict[bytes, Buoyancy] = {}
+_waters: collections.OrderedDict[bytes, Buoyancy] = collections.OrderedDict()
 """Waters by the fingerprint of their models, the last used last."""
 _settings: dict[str, Settings] = {}
 """Settings that this process has put into models, by their texts, the newest last."""
@@ -56,7 +57,7 @@ def find_water(model: int, instance: int) -> Buoyancy:
             _drop_unused()
             with _making_water():
                 _waters[key] = _make_water(copy_model(model), instance)
-        _waters[key] = _waters.pop(key)
+        _waters.move_to_end(key)
         return _waters[key]
 
 

@@ -30,6 +30,11 @@ def find_moving_bodies(model: mujoco.MjModel) -> NDArray[np.bool_]:
     return np.asarray(model.body_treeid >= 0)
 
 
+def find_mocap_bodies(model: mujoco.MjModel) -> NDArray[np.bool_]:
+    """Whether each body (nbody,) is a mocap body, or fixed to one."""
+    return np.asarray(model.body_mocapid[model.body_weldid] >= 0)
+
+
 def group_floating_bodies(model: mujoco.MjModel) -> tuple[NDArray[np.int64], ...]:
     """The bodies that float together, as indices, in the order of the model.
 

@@ -81,12 +81,7 @@ def inspect_model(
     forms = parse_shapes(model, selected, selection)
     fills = parse_fills(model, selected, selection)
     geoms = tuple(
-        inspect_geom(
-            model,
-            verdict,
-            convex=forms.get(verdict.geom) == "convex",
-            fill=fills.get(verdict.geom, 1.0),
-        )
+        inspect_geom(model, verdict, selected, forms, fill=fills.get(verdict.geom, 1.0))
         for verdict in verdicts
     )
     problems = [geom.problem for geom in geoms if geom.problem]

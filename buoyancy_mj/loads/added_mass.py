@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import elliprd
 
-from buoyancy_mj.errors import ModelError, choices
+from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.hulls.custom import find_body, read_numerics
 from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
 from buoyancy_mj.hulls.names import body_name
@@ -23,21 +23,24 @@ SOURCES = ("model", "estimate", "none")
 
 
 def check_source(source: object) -> None:
-    """Refuse what is no source of added mass.
+    """Refuse what is no source of added mass; which bodies there are is known with the model.
 
     Raises:
-        ModelError: it is none of `SOURCES`, None or a mapping by the names of bodies.
+        ModelError: it is none of `SOURCES`, None or a mapping by the names of bodies, or it holds
+            a matrix that is none.
     """
     if source is None or (isinstance(source, str) and source in SOURCES):
         return
     if not isinstance(source, Mapping):
         raise ModelError(
-            f"added mass is {' '.join(repr(source).split())}; "
-            f"{choices(str(source), SOURCES)}, or matrices by body"
+            f"added mass is {describe(source)}; {choices(source, SOURCES)}, or matrices by body"
         )
-    for name in source:
+    for name, matrix in source.items():
         if not isinstance(name, str):
-            raise ModelError(f"added mass is given for body {name!r}; a body's name is a text")
+            raise ModelError(
+                f"added mass is given for body {describe(name)}; a body's name is a text"
+            )
+        parse_matrix(matrix, f"the added mass of body '{name}'")
 
 
 def resolve_added_mass(

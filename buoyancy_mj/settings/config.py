@@ -6,7 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from buoyancy_mj.errors import BuoyancyError, MethodError, ModelError, WaterError
+from buoyancy_mj.errors import BuoyancyError, MethodError, ModelError, WaterError, describe
 from buoyancy_mj.hulls.selection import Selection, join_words, split_words
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.sea.currents import Current
@@ -85,7 +85,9 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         )
     water = settings.water
     if type(water) is not Water:
-        raise WaterError(f"{water!r} cannot be written into a model; possible is a Water itself")
+        raise WaterError(
+            f"{describe(water)} cannot be written into a model; possible is a Water itself"
+        )
     waves = cast(tuple[Wave, ...], water.waves)
     texts = {
         "density": format_value(float(water.density)),
@@ -101,13 +103,27 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
     return {key: text for key, text in texts.items() if text}
 
 
+def has_texts(settings: Settings) -> bool:
+    """Whether settings can be written as texts: all but those of somebody's own classes can."""
+    try:
+        write_plugin_config(settings)
+    except BuoyancyError:
+        return False
+    return True
+
+
 def _parse_water(words: Mapping[str, str], where: str) -> dict[str, Any]:
     """The table of a sea."""
-    table = {key: parse_value(words[key]) for key in ("density", "level") if key in words}
+    table = {
+        key: parse_value(words[key], f"{where}: {key}")
+        for key in ("density", "level")
+        if key in words
+    }
     if "current" in words:
         text = words["current"]
-        speeds = [parse_value(word) for word in text.replace(",", " ").split()]
-        table["current"] = parse_table(text, f"{where}: current") if "=" in text else speeds
+        place = f"{where}: current"
+        speeds = [parse_value(word, place) for word in text.replace(",", " ").split()]
+        table["current"] = parse_table(text, place) if "=" in text else speeds
     if "waves" in words:
         waves = [wave for wave in words["waves"].split(";") if wave.strip()]
         table["waves"] = [parse_table(wave, f"{where}: waves") for wave in waves]
@@ -116,7 +132,7 @@ def _parse_water(words: Mapping[str, str], where: str) -> dict[str, Any]:
 
 def _parse_damping(text: str, where: str) -> Any:
     """The table of damping, or its kind, or whether there is any."""
-    return parse_table(text, where) if "=" in text else parse_value(text)
+    return parse_table(text, where) if "=" in text else parse_value(text, where)
 
 
 def _format_wave(wave: Wave) -> str:
@@ -124,7 +140,7 @@ def _format_wave(wave: Wave) -> str:
     kinds = [kind for kind, cls in WAVES.items() if type(wave) is cls]
     if not kinds:
         raise WaterError(
-            f"{wave!r} cannot be written into a model; possible are {', '.join(WAVES)}"
+            f"{describe(wave)} cannot be written into a model; possible are {', '.join(WAVES)}"
         )
     leave_out = _redundant_lengths(wave) if isinstance(wave, RegularWave) else ()
     return format_table(kinds[0], wave, leave_out=leave_out)
@@ -151,7 +167,7 @@ def _format_current(current: Current) -> str:
             return format_table(kind, current)
     if not isinstance(current, tuple):
         raise WaterError(
-            f"{current!r} cannot be written into a model; possible are three numbers, "
+            f"{describe(current)} cannot be written into a model; possible are three numbers, "
             f"{', '.join(CURRENTS)}"
         )
     return " ".join(format_value(float(speed)) for speed in current)
@@ -161,7 +177,7 @@ def _format_method(method: Method) -> str:
     """A method as text."""
     if type(method) not in METHODS.values():
         raise MethodError(
-            f"{method!r} cannot be written into a model; possible are {', '.join(METHODS)}"
+            f"{describe(method)} cannot be written into a model; possible are {', '.join(METHODS)}"
         )
     return format_table(method.name, method)
 

@@ -6,7 +6,7 @@ from typing import Any, TypedDict
 
 from numpy.typing import ArrayLike
 
-from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices
+from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.loads.added_mass import check_source
 from buoyancy_mj.loads.damping import Damping, Panels
@@ -56,15 +56,17 @@ class Settings:
     def __post_init__(self) -> None:
         # kinds of values
         if not isinstance(self.water, Water):
-            raise WaterError(f"water is {self.water!r}; it must be a Water, as Water(waves=...)")
+            raise WaterError(
+                f"water is {describe(self.water)}; it must be a Water, as Water(waves=...)"
+            )
         if not isinstance(self.damping, Damping | None):
             raise ModelError(
-                f"damping is {self.damping!r}; "
+                f"damping is {describe(self.damping)}; "
                 "it must be Damping(viscous=..., radiation=...) or None"
             )
         if not isinstance(self.selection, Selection):
             raise ModelError(
-                f"selection is {self.selection!r}; "
+                f"selection is {describe(self.selection)}; "
                 "it must be Selection(geoms=..., hull=..., fill=...)"
             )
         check_source(self.added_mass)
@@ -73,7 +75,7 @@ class Settings:
         object.__setattr__(self, "method", parse_method(self.method))
         if self.pressure not in PRESSURES:
             raise MethodError(
-                f"pressure is '{self.pressure}'; {choices(str(self.pressure), PRESSURES)}"
+                f"pressure is {describe(self.pressure)}; {choices(self.pressure, PRESSURES)}"
             )
 
         # the other methods know neither pressure nor triangles
