@@ -21,6 +21,7 @@ from buoyancy_mj import (
     water_in,
 )
 from buoyancy_mj.engine.instances import PLUGIN
+from buoyancy_mj.hulls.convex_choice import describe_convex_choice
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.replicas import find_originals
 from buoyancy_mj.hulls.selection import add_geom, join_words, rename_patterns, split_words
@@ -613,6 +614,16 @@ def test_a_word_of_a_sequence_is_whole_and_a_text_splits():
     assert volumes(said)["my hull"] == pytest.approx(HULL / 2)
     with pytest.raises(ModelError, match="no moving geom matches 'my'"):
         volumes(plain, selection=Selection(geoms="my hull"))
+
+
+def test_the_advised_choice_of_convex_hulls_is_one_flag_for_each_pattern():
+    model = with_custom("", '<geom name="bob\'s tail" size=".05" pos="0 0 -.2" mass=".1"/>')
+    geoms = [model.geom("box").id, model.geom("bob's tail").id]
+    assert describe_convex_choice(model, geoms, geoms) == (
+        "--hull 'box=convex' --hull 'bob?s?tail=convex', "
+        "in Python Selection(hull='box=convex bob?s?tail=convex'), "
+        'in MJCF <text name="buoyancy_hull" data="box=convex bob?s?tail=convex"/>'
+    )
 
 
 @given(st.lists(st.text(min_size=1).filter(str.strip), min_size=1))
