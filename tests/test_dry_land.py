@@ -4,10 +4,14 @@ import warnings
 from pathlib import Path
 
 import mujoco
+import numpy as np
 import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
 
 from buoyancy_mj import BuoyancyWarning
-from buoyancy_mj.scenes.dry_land import remove_dry_land
+from buoyancy_mj.scenes.dry_land import _find_hull_heights, remove_dry_land
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
@@ -87,6 +91,8 @@ def test_ground_at_the_level_of_the_water_is_left_out_and_told_whatever_its_shap
         (SLAB.format(z=2.0), ""),
         # a beach far off
         (ISLAND.format(z=-0.5), TERRAIN.format(heights="0 0 9 0 0 9 0 0 9")),
+        # a signed distance field
+        ('<geom name="g" type="sdf" mesh="m" pos="0 0 -.5"/>', PRISM),
         # what touches nothing
         (SLAB.format(z=-0.5).replace("/>", ' contype="0" conaffinity="0"/>'), ""),
         ('<geom name="g" type="plane" size="1 1 1" contype="0" conaffinity="0"/>', ""),
@@ -114,6 +120,35 @@ def test_a_vehicle_that_starts_inside_the_ground_gets_it_out_of_its_way():
     names, (told,) = judge(SLAB.format(z=0.0), start=(0.0, 0.0, -0.3))
     assert names == ["hull"]
     assert "box 'g' at z = 0.5 m would keep out" in told
+
+
+BASIN = (
+    np.array([[x, y, z] for z in (-1, 0.5) for x in (-3, 3) for y in (-3, 3)])
+    * np.array([[[1, 1, 1]], [[0.9, 0.9, 0.95]]])
+).reshape(-1, 3)
+
+
+def test_a_basin_in_one_mesh_is_full_as_it_is_for_contacts():
+    text = " ".join(map(str, BASIN.ravel()))
+    extra = f'<asset><mesh name="m" vertex="{text}"/></asset>'
+    names, (told,) = judge('<geom name="g" type="mesh" mesh="m"/>', extra=extra)
+    assert names == ["hull"]
+    assert "ground mesh 'g' at z = 0.5 m would keep out" in told
+    # deep under water, or high above as a bridge, it stays
+    for z in (-2, 2):
+        assert judge(f'<geom name="g" type="mesh" mesh="m" pos="0 0 {z}"/>', extra=extra)[1] == []
+
+
+@given(st.integers(0, 10**6))
+def test_heights_of_a_hull_are_those_that_a_ray_finds(seed):
+    rng = np.random.default_rng(seed)
+    vertices = rng.normal(size=(12, 3))
+    solid = trimesh.convex.convex_hull(vertices)
+    points = np.column_stack([rng.uniform(-2, 2, (20, 2)), np.full(20, 9.0)])
+    heights = np.full(20, -np.inf)
+    places, lines, _ = solid.ray.intersects_location(points, np.tile([0.0, 0, -1], (20, 1)))
+    np.maximum.at(heights, lines, places[:, 2])
+    assert _find_hull_heights(vertices, points) == pytest.approx(heights, abs=1e-9)
 
 
 def test_tiles_are_one_ground():

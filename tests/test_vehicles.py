@@ -155,6 +155,29 @@ def test_a_fin_that_is_drawn_alone_displaces_whether_or_not_visual_geoms_are_dis
     assert ran(path)[0]["mass"] == pytest.approx(5.0)
 
 
+FUSED = """<mujoco><compiler fusestatic="{flag}"/><worldbody>
+<body name="mark" pos="9 0 0"><geom size=".1" contype="0" conaffinity="0"/></body>
+<body name="b"><freejoint/><geom type="box" size=".1 .1 .1" mass="4"/>
+<body name="mast" pos="0 0 .2"><geom type="box" size=".01 .01 .1" mass="1"/></body>
+</body></worldbody></mujoco>"""
+BUOYS = """<mujoco><worldbody>{}</worldbody></mujoco>""".format(
+    "".join(
+        f'<body pos="{x} 5 0"><freejoint/><geom type="box" size=".1 .1 .1" mass="4"/></body>'
+        for x in range(3)
+    )
+)
+
+
+@pytest.mark.parametrize("flag", ["false", "true"])
+def test_what_floats_in_the_environment_is_no_part_of_a_vehicle_whose_bodies_are_fused(
+    tmp_path, flag
+):
+    path = write(tmp_path, "rov.xml", FUSED.format(flag=flag))
+    buoys = write(tmp_path, "buoys.xml", BUOYS)
+    summary, _ = ran(path, "--set", f"environment='{buoys}'")
+    assert summary["displacement"] == pytest.approx(8.08)
+
+
 # plates
 
 

@@ -4,7 +4,8 @@ People draw a vehicle on a floor at z = 0, where a scene has its water. A plane 
 is level and lies at the water's level or above it, wherever the vehicle is. Any other fixed geom is
 if its surface lies so high everywhere under the vehicle and a length of the vehicle around it. What
 reaches above the water beside the vehicle, as a quay does, or above the vehicle, as a bridge does,
-stays; so does what touches nothing.
+stays; so does what touches nothing. A mesh counts as its convex hull, since MuJoCo has contacts
+with that: a basin in one mesh is full.
 """
 
 import itertools
@@ -16,14 +17,15 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import ConvexHull
 
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import geom_kind, geom_name
 from buoyancy_mj.scenes.specs import compile_spec
 
-_PLANE, _HEIGHT_FIELD, _MESH = (
-    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "HFIELD", "MESH")
+_PLANE, _HEIGHT_FIELD, _MESH, _SDF = (
+    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "HFIELD", "MESH", "SDF")
 )
 _GEOM = mujoco.mjtObj.mjOBJ_GEOM
 _LEVEL_COSINE = 0.95
@@ -123,10 +125,8 @@ def _measure_grounds(
         _Ground(
             geom,
             f"{geom_kind(model, twin.id)} '{geom_name(model, twin.id)}'",
-            *(
-                np.array([_find_height(model, data, twin.id, point) for point in points])
-                for points in (around, under)
-            ),
+            _find_heights(model, data, twin.id, around),
+            _find_heights(model, data, twin.id, under),
         )
         for geom, twin in zip(fixed, twins, strict=True)
     ]
@@ -185,40 +185,70 @@ def _bound_vehicle(
     return bounds
 
 
-def _find_height(
-    model: mujoco.MjModel, data: mujoco.MjData, geom: int, point: NDArray[np.float64]
-) -> float:
-    """Height [m] of a geom's surface under a point (3,), minus infinity where there is none.
+def _find_heights(
+    model: mujoco.MjModel, data: mujoco.MjData, geom: int, points: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Heights (n,) [m] of a geom's surface under points (n, 3), minus infinity where there is none.
 
-    A point inside the geom has its top above it.
+    A point inside the geom has its top above it. A mesh is its convex hull, as for its contacts.
     """
     kind = int(model.geom_type[geom])
     turn, middle = data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
     if kind == _PLANE:
-        return float(middle[2]) if turn[2, 2] > _LEVEL_COSINE else -np.inf
-    box = model.geom_aabb[geom]
-    top = float(middle[2] + turn[2] @ box[:3] + np.abs(turn[2]) @ box[3:])
+        return np.full(len(points), middle[2] if turn[2, 2] > _LEVEL_COSINE else -np.inf)
+    if kind == _SDF:
+        # it is no ground: its contacts are with the surface that it draws
+        return np.full(len(points), -np.inf)
+    if kind == _MESH:
+        return _find_hull_heights(_list_vertices(model, geom) @ turn.T + middle, points)
 
     # a height field has one surface, which is found from above it
+    box = model.geom_aabb[geom]
+    top = float(middle[2] + turn[2] @ box[:3] + np.abs(turn[2]) @ box[3:])
     down, normal = np.array([0.0, 0.0, -1.0]), np.zeros(3)
-    if kind == _HEIGHT_FIELD:
-        point = np.array([point[0], point[1], max(point[2], top + 1.0)])
-        distance = mujoco.mj_rayHfield(model, data, geom, point, down, normal)
-    elif kind == _MESH:
-        distance = mujoco.mj_rayMesh(model, data, geom, point, down, normal)
-    else:
-        size = model.geom_size[geom]
-        distance = mujoco.mju_rayGeom(middle, turn.ravel(), size, point, down, kind, normal)
+    heights = []
+    for point in points:
+        if kind == _HEIGHT_FIELD:
+            start = np.array([point[0], point[1], max(point[2], top + 1.0)])
+            distance = mujoco.mj_rayHfield(model, data, geom, start, down, normal)
+        else:
+            start, size = point, model.geom_size[geom]
+            distance = mujoco.mju_rayGeom(middle, turn.ravel(), size, start, down, kind, normal)
+        below = start[2] - distance if normal[2] > 0.0 else top
+        heights.append(below if distance >= 0.0 else -np.inf)
+    return np.array(heights)
 
-    if distance < 0.0:
-        return -np.inf
-    return float(point[2] - distance) if normal[2] > 0.0 else top
+
+def _list_vertices(model: mujoco.MjModel, geom: int) -> NDArray[np.float64]:
+    """Vertices (n, 3) [m] of the mesh of a geom, in its frame."""
+    mesh = model.geom_dataid[geom]
+    first = model.mesh_vertadr[mesh]
+    return np.asarray(model.mesh_vert[first : first + model.mesh_vertnum[mesh]], float)
+
+
+def _find_hull_heights(
+    vertices: NDArray[np.float64], points: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The same for the convex hull of vertices (m, 3) [m].
+
+    It is where all half spaces n . x + d <= 0 of its facets meet, whose vertical lines have ends.
+    """
+    equations = ConvexHull(vertices).equations
+    upward = equations[:, 2]
+    beside = points[:, :2] @ equations[:, :2].T + equations[:, 3]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = -beside / upward
+    upper = np.where(upward > 0.0, ends, np.inf).min(axis=1)
+    lower = np.where(upward < 0.0, ends, -np.inf).max(axis=1)
+    outside = ((upward == 0.0) & (beside > 0.0)).any(axis=1)
+    reached = ~outside & (lower <= upper) & (lower <= points[:, 2])
+    return np.where(reached, upper, -np.inf)
 
 
 def _remove_geom(spec: mujoco.MjSpec, geom: mujoco.MjsGeom) -> None:
     """Remove a geom, and what refers to it: contact pairs and sensors."""
     if geom.name:
-        referring: Sequence[mujoco.MjsPair | mujoco.MjsSensor] = [
+        referring = [
             *(pair for pair in spec.pairs if geom.name in (pair.geomname1, pair.geomname2)),
             *(
                 sensor

@@ -8,17 +8,18 @@ import numpy as np
 
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
-from buoyancy_mj.scenes.specs import read_spec
+from buoyancy_mj.scenes.specs import compile_spec, read_spec
 from buoyancy_mj.scenes.urdf import add_missing_inertia, is_urdf
 
 _NO_GRAVITY = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
 
 
 def read_vehicle(path: Path) -> mujoco.MjSpec:
-    """Read a vehicle's file without compiling it, and make it ready for the water of a scene.
+    """Read a vehicle's file, and make it ready for the water of a scene.
 
     The vehicle gets a free joint if it has none, gravity if it is without, and loses the water that
-    its file brings. Links of a URDF without inertia get the smallest sound one.
+    its file brings. Links of a URDF without inertia get the smallest sound one. Where the file has
+    MuJoCo fuse bodies that cannot move, they are fused.
 
     Raises:
         ModelError: MuJoCo refuses the file, or it has no body that could float.
@@ -29,6 +30,10 @@ def read_vehicle(path: Path) -> mujoco.MjSpec:
         add_missing_inertia(spec)
     _turn_gravity_on(spec)
     remove_water(spec)
+
+    # the compiler fuses bodies in the spec itself, which then has those of the model
+    if spec.compiler.fusestatic:
+        compile_spec(spec, path)
     return spec
 
 
