@@ -11,8 +11,8 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.distinct_poses import group_poses
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
@@ -74,7 +74,9 @@ def equilibrium(
 ) -> Equilibrium:
     """Find the pose in which a vessel comes to rest, its joints held.
 
-    The search takes Newton steps that always lead down, see `statics.balance.find_balance`.
+    The search takes Newton steps that always lead down, see `statics.descent.find_balance`. On a
+    summit the vessel falls the way that its least asymmetry drives it; without any it heels to
+    starboard, or trims by the bow where only that leads down.
 
     Args:
         model: any MuJoCo model with a body that floats.
@@ -107,8 +109,10 @@ def equilibria(
 ) -> tuple[Equilibrium, ...]:
     """Find every pose in which a vessel stays at rest, its joints held; lowest energy first.
 
-    The search starts from 42 attitudes all round. Poses that differ by heading alone, or by rolling
-    without resistance, count once.
+    The search starts from the lows of the energy over 642 attitudes all round, 9 degrees apart, and
+    over others 1 degree apart where the torque may vanish. Poses that differ by heading alone, or
+    by a turn that resists with less than 0.0005 of weight times radius per radian, count once, as
+    the one nearest to the start.
 
     Args:
         model: any MuJoCo model with a body that floats.

@@ -75,7 +75,9 @@ def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.in
     return poses, np.unique(edges, axis=0)
 
 
-def _find_near_balance(poses: Sequence[FloatingPose], faces: NDArray[np.int64]) -> NDArray[np.int64]:
+def _find_near_balance(
+    poses: Sequence[FloatingPose], faces: NDArray[np.int64]
+) -> NDArray[np.int64]:
     """Find the triangles of attitudes over which the torque changes by as much as it measures.
 
     Where it is as small as that of a turn that nothing resists, there is nothing to find.
