@@ -245,6 +245,22 @@ def test_off_an_exact_summit_it_heels_to_starboard_or_trims_by_the_bow(size, sta
         assert (-y, x) == pytest.approx((starboard, bow), abs=1e-6)
 
 
+@pytest.mark.parametrize("clearance", [-1e-3, -1e-6, 0.0, 1e-8, 1e-6])
+def test_outriggers_that_just_touch_the_water_hold_a_narrow_hull(clearance):
+    # 250 mm draft; without outriggers GM = 0.3^2 / (12 * 0.25) - 0.225 < 0
+    height = 0.05 + clearance
+    model = vessels.of_geoms(
+        '<geom type="box" size="1 .15 .3" pos="0 0 .05"/>'
+        f'<geom type="box" size=".5 .1 .05" pos="0 .6 {height!r}"/>'
+        f'<geom type="box" size=".5 .1 .05" pos="0 -.6 {height!r}"/>',
+        '<inertial pos="0 0 .1" mass="150" diaginertia="10 50 50"/>',
+    )
+    found = equilibrium(model)
+    assert found.stable
+    assert math.degrees(found.hydrostatics.heel) == pytest.approx(0.0, abs=1e-3)
+    assert {one.stability for one in equilibria(model)} == {"stable"}
+
+
 @given(st.integers(0, 10**6), st.floats(0.05, 0.95))
 @settings(max_examples=15, deadline=None)
 def test_where_it_comes_to_rest_is_one_of_all_rest_poses(seed, ratio):
