@@ -335,6 +335,18 @@ def test_no_module_comes_from_the_working_folder(hostile, arguments):
 
 
 @pytest.mark.slow
+def test_an_empty_part_of_the_path_is_not_the_working_folder(hostile):
+    parts = os.pathsep.join(["", os.environ.get("PYTHONPATH", "/nowhere")])
+    done = run_python(
+        "-m", "buoyancy_mj", *["run", "hourglass_drop_still", "--duration", "0.05"],
+        *["--record", "x.rrd"], cwd=hostile, env=os.environ | {"PYTHONPATH": parts},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert executed(hostile) == []
+    assert b"FOOT" in (hostile / "x.rrd").read_bytes()[-32:]
+
+
+@pytest.mark.slow
 def test_a_program_of_the_user_keeps_its_working_folder(tmp_path):
     package = tmp_path / "mine"
     package.mkdir()
