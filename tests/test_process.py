@@ -1,5 +1,6 @@
 """Safe to run and to stop: signals end a command, and no file of the working folder is run."""
 
+import contextlib
 import os
 import shutil
 import signal
@@ -33,6 +34,13 @@ def run_python(*arguments, **options):
         [sys.executable, *arguments],
         capture_output=True, text=True, check=False, timeout=300, **options,
     )  # fmt: skip
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """Runs a command in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: CliRunner().invoke(app, [str(part) for part in arguments])
 
 
 @pytest.fixture
@@ -204,6 +212,29 @@ def test_a_signal_that_comes_where_python_cannot_raise_still_ends_the_command():
     with pytest.raises(Stop, match="SIGTERM"):
         work()
     assert finished
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", str(STILL), "--no-record"],
+        ["sweep", str(STILL), "--over", "mass=9:10:100", "--duration", "0.05", "--out", "x.csv"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_a_signal_that_other_code_catches_still_ends_the_command(here, monkeypatch, arguments):
+    def deaf(scene):
+        with contextlib.suppress(BaseException):
+            signal.raise_signal(signal.SIGTERM)
+        made.append(scene)
+        return Simulation(scene)
+
+    made = []
+    monkeypatch.setattr("buoyancy_mj.cli.runs.Simulation", deaf)
+    monkeypatch.setattr(sweep, "Simulation", deaf)
+    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    assert here(*arguments).exit_code == 143
+    assert len(made) == 1
 
 
 def test_a_signal_that_must_not_be_raised_here_is_raised_in_a_moment():
@@ -444,12 +475,6 @@ def test_memory_that_runs_out_is_one_sentence(monkeypatch):
 
 
 # what is there stays ------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(app, [str(part) for part in arguments])
 
 
 def test_a_file_is_replaced_as_a_whole_or_not_at_all(tmp_path):

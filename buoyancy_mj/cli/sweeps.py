@@ -9,6 +9,7 @@ from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
 from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags, check_file_name
+from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.errors import SweepError
 from buoyancy_mj.scenes import catalog, ranges
 from buoyancy_mj.scenes.scene import read_scene
@@ -63,6 +64,7 @@ def sweep(
                 done += 1
                 failures += [row["reason"]] if row["status"] != "done" else []
                 update(advance=1)
+                raise_received()
         except KeyboardInterrupt:
             console.print_line(
                 console.err,
