@@ -19,6 +19,8 @@ def _prepare() -> None:
         # where Python has put the working folder
         del sys.path[0]
     _drop_empty_parts()
+    # for other processes: glfw starts a Python to look at its library
+    os.environ["PYTHONSAFEPATH"] = "1"
 
     # Numba obeys a .numba_config.yaml in the working folder, but not against the environment
     for name in ("NUMBA_CACHE_DIR", "NUMBA_CACHE_LOCATOR_CLASSES"):

@@ -312,9 +312,10 @@ def test_a_sweep_stops_while_it_steps(tmp_path, number):
 # the working folder -------------------------------------------------------------------------------
 
 MODULES = (
-    "csv", "email", "enum", "glfw", "importlib_metadata", "llvmlite", "manifold3d", "matplotlib",
-    "mujoco", "networkx", "numba", "numpy", "pyarrow", "random", "rerun", "rerun_bindings",
-    "rerun_cli", "rich", "scipy", "shellingham", "signal", "tempfile", "trimesh", "typer", "uuid",
+    "csv", "ctypes", "email", "enum", "glfw", "importlib_metadata", "json", "llvmlite",
+    "manifold3d", "matplotlib", "mujoco", "networkx", "numba", "numpy", "pyarrow", "random",
+    "rerun", "rerun_bindings", "rerun_cli", "rich", "scipy", "shellingham", "signal", "subprocess",
+    "tempfile", "trimesh", "typer", "uuid",
 )  # fmt: skip
 
 
