@@ -1,11 +1,14 @@
 """What can go wrong, said in one sentence.
 
-In: nothing.
-Out: exceptions with one root, `BuoyancyError`, and `choices`, which ends their messages.
+In: any value that somebody gave.
+Out: exceptions with one root, `BuoyancyError`, and the parts of their messages: `describe`, which
+shows a value, and `choices`, which lists what was possible.
 May import: nothing of this package.
 """
 
 import difflib
+import math
+import reprlib
 from collections.abc import Iterable
 
 
@@ -23,6 +26,10 @@ class ModelError(BuoyancyError):
 
 class SceneError(BuoyancyError):
     """A scene that cannot be read, or a value in it that makes no sense."""
+
+
+class SceneTypeError(SceneError):
+    """A key that a scene does not have, or a value of another type than the key's."""
 
 
 class WaterError(BuoyancyError):
@@ -61,9 +68,33 @@ class BuoyancyWarning(UserWarning):
     """A repair, an omission or a doubt that the user should know of."""
 
 
-def choices(got: str, possible: Iterable[str]) -> str:
+def choices(got: object, possible: Iterable[str]) -> str:
     """The tail of an error message: the nearest match to `got`, and all that is possible."""
     names = sorted(possible)
-    near = difflib.get_close_matches(got, names, n=1)
+    near = difflib.get_close_matches(got, names, n=1) if isinstance(got, str) else []
     hint = f"did you mean '{near[0]}'? " if near else ""
     return f"{hint}possible: {', '.join(names) or 'nothing'}"
+
+
+def describe(value: object) -> str:
+    """A value as messages show it: its `repr`, on one line, shortened where that is long."""
+    return " ".join(_REPR.repr(value).split())
+
+
+class _ShortRepr(reprlib.Repr):
+    """Short texts of values, whatever they are: lists in lists in lists, numbers without end."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel = 3
+        self.maxlist = self.maxtuple = self.maxdict = self.maxarray = 6
+        self.maxstring = self.maxother = self.maxlong = 100
+
+    def repr_int(self, x: int, _: int) -> str:
+        """A whole number; a long one by its digits, which Python refuses to write out."""
+        if abs(x) < 10**30:
+            return repr(x)
+        return f"a whole number of about {math.log10(2.0) * x.bit_length():.0f} digits"
+
+
+_REPR = _ShortRepr()

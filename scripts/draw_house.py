@@ -29,7 +29,7 @@ MARKS = ("<!-- written by scripts/draw_house.py -->\n", "<!-- end -->\n")
 """What stands before and after the table on the page."""
 WIDTH, HEIGHT, GAP = 12.0, 1.1, 0.72
 """Width of the picture, height of a room and distance between floors."""
-EVERYWHERE = {"errors", "files", "records"}
+EVERYWHERE = {"errors", "files", "records", "values"}
 """Small rooms that serve any other, so that their streams would say nothing."""
 INK, WATER, BANK = "#12343b", "#2a8ca8", "#e9f4f5"
 

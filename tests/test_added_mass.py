@@ -1,6 +1,7 @@
 """Added mass: Lamb's ellipsoids, Kirchhoff's equations, periods, waves, and a steady engine."""
 
 import math
+import re
 
 import mujoco
 import numpy as np
@@ -8,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import Buoyancy, ModelError, RegularWave, Water, add_water, water_in
+from buoyancy_mj import Buoyancy, ModelError, RegularWave, Settings, Water, add_water, water_in
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
 from buoyancy_mj.loads.added_mass import ellipsoid_added_mass, estimate_added_mass
@@ -428,7 +429,8 @@ def test_above_the_water_nothing_is_added():
         ),
         (
             {"hull": [1, 2, 3]},
-            "the added mass of body 'hull' has 3 numbers; it must be 6, its diagonal, or all 36",
+            "the added mass of body 'hull' is [1, 2, 3], of shape (3,); "
+            "it must be numbers of shape (6,) or (36,) or (6, 6)",
         ),
         (
             {"hull": [1, 2, 3, 4, 5, math.nan]},
@@ -436,7 +438,8 @@ def test_above_the_water_nothing_is_added():
         ),
         (
             {"hull": "heavy"},
-            "the added mass of body 'hull' is 'heavy'; it must be 6 numbers or a 6 x 6 matrix",
+            "the added mass of body 'hull' is 'heavy'; "
+            "it must be numbers of shape (6,) or (36,) or (6, 6)",
         ),
         (
             {"hull": np.eye(6) + np.eye(6, k=1)},
@@ -450,8 +453,22 @@ def test_above_the_water_nothing_is_added():
 )
 def test_added_mass_that_makes_no_sense_is_refused(added_mass, message):
     model = mujoco.MjModel.from_xml_string(ARM.format(hull=words(DIAGONAL), arm=words(DIAGONAL)))
-    with pytest.raises(ModelError, match=message):
+    with pytest.raises(ModelError, match=re.escape(message)):
         Buoyancy(model, added_mass=added_mass)
+
+
+def test_added_mass_of_a_body_that_there_is_not_waits_for_the_model_and_all_else_does_not():
+    Settings(added_mass={"no such body": DIAGONAL})
+    for added_mass, message in (
+        ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
+        (5, "added mass is 5; possible: estimate, model, none, or matrices by body"),
+        ({"hull": np.zeros((3, 12))}, "of shape (3, 12); it must be numbers of shape (6,)"),
+        ({"hull": np.eye(6) * 1j}, "it must be numbers of shape (6,) or (36,) or (6, 6)"),
+        ({"hull": [10**400] * 6}, "it must be numbers of shape (6,) or (36,) or (6, 6)"),
+        ({"hull": -DIAGONAL}, "the added mass of body 'hull' has a negative eigenvalue"),
+    ):
+        with pytest.raises(ModelError, match=re.escape(message)):
+            Settings(added_mass=added_mass)
 
 
 def test_a_body_whose_inertia_is_kept_as_a_diagonal_takes_what_fits():

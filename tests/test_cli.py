@@ -159,7 +159,7 @@ def test_notices_go_to_the_standard_error(run, tmp_path):
             ("auv_waves", "--set", "watr.level=1"),
             r"error: scene 'auv_waves': unknown key 'watr'; did you mean 'water'\?",
         ),
-        (("auv_waves", "--duration", "-1"), r"duration is -1; it must be at least 1e-06"),
+        (("auv_waves", "--duration", "-1"), r"duration is -1.0; it must be at least 1e-06"),
         (("auv_waves", "--duration", "nan"), r"duration is nan"),
         (
             ("auv_waves", "--geoms", "hul*"),

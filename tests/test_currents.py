@@ -129,7 +129,15 @@ def test_currents_stand_in_scenes_and_in_models(tmp_path):
             lambda: CurrentSeries((0.0, np.nan), ((0, 0, 0), (1, 0, 0))),
             "times of the current hold nan in row 1",
         ),
-        (lambda: CurrentSeries("ab", 3), r"needs as many times as velocities"),
+        (
+            lambda: CurrentSeries("ab", 3),
+            r"the current's times is 'ab'; it must be numbers of shape \(n,\)",
+        ),
+        (
+            lambda: CurrentProfile((0.0, 1.0), (1.0, 0.0, 0.0)),
+            r"velocities is \(1.0, 0.0, 0.0\), of shape \(3,\); it must be numbers of shape "
+            r"\(n, 3\)",
+        ),
         (lambda: Water(current=(1.0, np.nan, 0.0)), "it must be three finite numbers"),
     ],
 )

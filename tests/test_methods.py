@@ -489,7 +489,7 @@ def test_an_axis_that_lies_level_is_wet_or_dry():
         (lambda: Sections(axis="up"), "axis is 'up'"),
         (lambda: Sections(axis=((1, 2), 3, 4)), "axis is"),
         (lambda: Sections(step="0.1"), "step is '0.1'"),
-        (lambda: ConvexHull(cut="no"), "cut is 'no'; it must be True or False"),
+        (lambda: ConvexHull(cut="no"), "cut is 'no'; it must be true or false"),
         (lambda: submerge(CONVEX["box"], method=ConvexHull), "is no method; possible are exact"),
         (lambda: Sections(rule="simpsons"), "did you mean 'simpson'"),
         (

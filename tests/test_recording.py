@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -210,6 +211,66 @@ def test_every_load_of_a_sea_is_plotted_by_its_cause(tmp_path):
         assert f"/plots/force/{cause}" in found, cause
     recorded(path, "sphere_decay", ["duration=0.1"])
     assert "/plots/force/radiation" in entities(rerun("print", "-vv", str(path)).stdout)
+
+
+FLEET = """
+title = "Two"
+duration = 0.1
+[[vehicles]]
+model = "hourglass"
+name = "first"
+[[vehicles]]
+model = "hourglass"
+name = "other"
+start.position = [1.0, 0.0, 0.0]
+"""
+
+
+def test_each_of_several_vehicles_has_its_own_plots_centres_and_forces(tmp_path):
+    (tmp_path / "two.toml").write_text(FLEET)
+    simulation = Simulation(read_scene(tmp_path / "two.toml"))
+    recording = Recording(simulation, tmp_path / "run.rrd")
+    for frame in simulation.frames():
+        recording.add(frame)
+    recording.close(simulation.summary())
+    text = rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout
+    found = entities(text)
+    for name in ("first", "other"):
+        for entity in (
+            f"/plots/{name}/height/centre_of_gravity",
+            f"/plots/{name}/energy/total",
+            f"/plots/{name}/force/buoyancy",
+            f"/plots/{name}/volume/hulls/{name}/glass",
+            f"/world/centres/{name}/gravity",
+            f"/world/forces/{name}/drag",
+            f"/world/bodies/{name}/hourglass/{name}/glass",
+        ):
+            assert entity in found, entity
+    assert "/plots/height/centre_of_gravity" not in found
+    assert "/world/centres/gravity" not in found
+
+
+def test_surroundings_are_drawn_and_not_plotted(tmp_path):
+    (tmp_path / "harbour.xml").write_text(
+        """<mujoco><worldbody>
+        <body name="pier" pos="1 0 0"><geom name="wall" type="box" size=".1 1 1" mass="5"/></body>
+        <body name="goal" mocap="true" pos="0 1 0"><geom name="ring" size=".1"/></body>
+        <body name="boat"><freejoint/><geom name="hull" type="box" size=".2 .1 .1" mass="8"/></body>
+        </worldbody></mujoco>"""
+    )
+    settings = ["duration=0.1", f"vehicle='{tmp_path / 'harbour.xml'}'"]
+    simulation, _ = recorded(tmp_path / "run.rrd", settings=settings)
+    found = entities(rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout)
+    assert {
+        "/world/environment/wall",
+        "/world/bodies/goal/ring",
+        "/world/bodies/boat/hull",
+    } <= found
+    assert {name for name in found if "hulls" in name and "plots" in name} == {
+        "/plots/volume/hulls/hull"
+    }
+    # the camera and the arrows have the size of the boat
+    assert simulation.vehicle.length == pytest.approx(2.0 * np.hypot(0.2, np.hypot(0.1, 0.1)))
 
 
 @pytest.mark.parametrize("scene", ["auv_pool", "auv_drop_still"])

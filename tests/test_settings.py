@@ -2,9 +2,11 @@
 
 import dataclasses
 import inspect
+import math
 import typing
 
 import mujoco
+import numpy as np
 import pytest
 
 import buoyancy_mj
@@ -199,3 +201,83 @@ def test_help_shows_every_field_of_a_public_dataclass_with_its_docstring(cls):
 def test_a_scene_has_the_fields_of_its_settings():
     assert issubclass(Scene, Settings)
     assert field_docs(Scene)["pressure"] == field_docs(Settings)["pressure"]
+
+
+class Swell:
+    """A wave of somebody's own: a level that is 0.1 m higher at time 0."""
+
+    def __init__(self, depth=math.inf, width=6):
+        self.rows = np.array([[0.1, 0.0, 0.0, 2.0, 0.0, depth]])[:, :width]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"water": Water(waves=Swell())},
+        {"added_mass": {"hourglass": [1.0, 1.0, 1.0, 0.1, 0.1, 0.1]}},
+    ],
+)
+def test_a_simulation_runs_with_what_no_model_can_hold(options):
+    scene = read_scene(catalog.scenes()["hourglass_drop_still"], ["duration=0.05"])
+    simulation = Simulation(dataclasses.replace(scene, **options))
+    for frame in simulation.frames():
+        assert np.isfinite(frame.draft)
+    for name, value in options.items():
+        assert getattr(simulation.buoyancy.settings, name) is value
+
+
+@pytest.mark.parametrize(
+    ("wave", "message"),
+    [
+        (Swell(width=5), r"of shape \(1, 5\); it must be numbers of shape \(n, 6\)"),
+        (Swell(depth=0.0), "hold a depth of 0; it must be above 0"),
+        (RegularWave, "RegularWave'> is no wave; possible are RegularWave"),
+    ],
+)
+def test_a_wave_of_somebodys_own_is_checked_at_once(wave, message):
+    with pytest.raises(buoyancy_mj.WaterError, match=message):
+        Water(waves=[wave])
+
+
+def test_no_damping_is_one_thing_however_it_is_said():
+    scene = catalog.scenes()["auv_waves"]
+    for text in ("none", "false", '{kind="none"}'):
+        assert read_scene(scene, [f"damping={text}"]).damping is None
+    for text in ("none", "false"):
+        assert config.parse_plugin_config({"damping": text}, "here").damping is None
+    radiation = Damping(viscous=None)
+    assert read_scene(scene, ['damping={kind="none", radiation=true}']).damping == radiation
+    for damping in (None, radiation, Damping(viscous=None, radiation=False), Damping()):
+        texts = config.write_plugin_config(Settings(damping=damping))
+        assert config.parse_plugin_config(texts, "here").damping == damping
+
+
+def test_numbers_of_numpy_are_numbers_and_truths_are_truths():
+    damping = Damping(viscous=Silhouette(coefficient=np.float32(0.5)), radiation=np.bool_(False))
+    assert damping == Damping(viscous=Silhouette(coefficient=0.5), radiation=False)
+    assert damping.radiation is False
+    water = Water(density=np.int64(1025), waves=JonswapSea(0.5, np.float32(4.0), seed=np.int32(7)))
+    assert water == Water(density=1025.0, waves=JonswapSea(0.5, 4.0, seed=7))
+    for value in (True, np.bool_(True), 1j, "1", None, np.array([1.0]), 10**400, np.nan):
+        with pytest.raises(buoyancy_mj.WaterError, match=r"density is .*; it must be a finite"):
+            Water(density=value)
+        with pytest.raises(buoyancy_mj.ModelError, match=r"coefficient is .*; it must be a finite"):
+            Silhouette(coefficient=value)
+    with pytest.raises(buoyancy_mj.ModelError, match="damping radiation is 1; it must be true or"):
+        Damping(radiation=1)
+
+
+def test_the_rows_of_a_water_cannot_be_changed_for_all_who_share_it():
+    sea = JonswapSea(0.5, 4.0)
+    water = Water(waves=sea, current=(0.1, 0.0, 0.0))
+    for rows in (water.rows, water.current_rows, sea.rows):
+        with pytest.raises(ValueError, match="read-only"):
+            rows[0, 0] = 9.0
+
+
+def test_the_old_name_of_a_key_says_the_new_one():
+    with pytest.raises(
+        buoyancy_mj.SceneError,
+        match="scene 'auv_waves': unknown key 'drag'; it is 'damping' now; possible: added_mass",
+    ):
+        read_scene(catalog.scenes()["auv_waves"], ["drag=false"])

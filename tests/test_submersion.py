@@ -303,6 +303,7 @@ def test_twelve_triangles_in_a_wave_displace_what_columns_of_water_do(wavelength
     )
 
 
+@pytest.mark.filterwarnings("ignore:the waves are so steep")
 @pytest.mark.parametrize("name", ["box", "plate", "rod", *ODD])
 def test_in_steep_waves_four_hulls_long_the_error_is_below_a_ten_thousandth(name):
     flat = {"box": (1.0, 0.5, 0.3), "plate": (1.0, 1.0, 0.01), "rod": (1.0, 0.03, 0.03)}
@@ -365,9 +366,13 @@ def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
         (
             (0.0, 0.0),
             None,
-            r"position is \(0.0, 0.0\) and time 0.0; they must be three finite numbers and one",
+            r"position is \(0.0, 0.0\), of shape \(2,\); it must be numbers of shape \(3,\)",
         ),
-        ((0.0, 0.0, np.nan), None, r"position is \(0.0, 0.0, nan\) and time 0.0; they must be"),
+        (np.zeros((3, 1)), None, r"of shape \(3, 1\); it must be numbers of shape \(3,\)"),
+        ((0.0, 0.0, np.nan), None, "position holds nan; its numbers must be finite"),
+        ((0.0, 0.0, 1j), None, r"position is .*; it must be numbers of shape \(3,\)"),
+        (("0", "0", "1"), None, r"position is \('0', '0', '1'\); it must be numbers"),
+        ((0.0, 0.0, 0.0), np.eye(3) * (1.0 + 0j), "it must be a rotation matrix"),
         ((0.0, 0.0, 0.0), np.diag([1.0, 1.0, -1.0]), "it must be a rotation matrix"),
         ((0.0, 0.0, 0.0), 2.0 * np.eye(3), "it must be a rotation matrix"),
         ((0.0, 0.0, 0.0), np.eye(2), "it must be a rotation matrix"),
@@ -376,6 +381,11 @@ def test_a_pose_that_is_not_finite_gives_nan_and_not_nothing():
 def test_a_pose_that_is_none_is_refused(position, rotation, message):
     with pytest.raises(MeshError, match=message):
         submerge(TORUS, position, rotation)
+
+
+def test_a_time_that_is_not_finite_is_refused():
+    with pytest.raises(MeshError, match="time is nan; it must be a finite number"):
+        submerge(TORUS, time=np.nan)
 
 
 def test_the_wetted_surface_has_the_wetted_area_and_its_waterline_lies_on_the_water():

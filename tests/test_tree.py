@@ -7,7 +7,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import Exact, LevelOscillation, MethodError, RegularWave, TriMesh, Water
+from buoyancy_mj import (
+    BuoyancyWarning,
+    Exact,
+    LevelOscillation,
+    MethodError,
+    RegularWave,
+    TriMesh,
+    Water,
+    WaterError,
+)
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes import shapes, tree
 from buoyancy_mj.submersion import exact
@@ -173,6 +182,7 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
         )
 
 
+@pytest.mark.filterwarnings("ignore:the waves are so steep")
 @given(
     st.integers(0, 10**6),
     st.floats(-0.7, 0.7),
@@ -223,16 +233,37 @@ def test_a_long_body_in_short_waves_is_right_too():
 
 
 @pytest.mark.slow
-def test_waves_steeper_than_any_sea_cost_no_eternity():
-    hulls = exact.PackedHulls(
-        HullSet([shapes.box((0.5, 0.4, 0.3))]), Water(waves=RegularWave(1e5, wavelength=1e-3))
-    )
+def test_the_steepest_and_shortest_waves_cost_no_eternity():
+    wave = RegularWave(0.0085, wavelength=0.017)
+    with pytest.warns(BuoyancyWarning, match="200,000 triangles keep the volume of a hull to"):
+        hulls = exact.PackedHulls(HullSet([shapes.box((0.5, 0.4, 0.3))]), Water(waves=wave))
+    assert len(hulls.hulls.faces) < 3 * exact.MOST_TRIANGLES
     assert np.isfinite(hulls.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), 0.1)[0, 0])
 
 
-@pytest.mark.parametrize("tolerance", [0.0, -1e-4, 2.0, float("nan"), True, "fine"])
+def test_waves_too_short_to_be_resolved_over_a_hull_are_refused():
+    # 512 rad of phase from the middle of the box to a corner
+    half = np.array([10.0, 4.0, 3.0])
+    shortest = 2.0 * np.pi * np.linalg.norm(half) / 512.0
+    hulls = HullSet([shapes.box(tuple(half))])
+    with pytest.raises(
+        WaterError,
+        match=r"the water has waves 0\.136 m long, too short for a hull 22\.4 m from corner to "
+        r"corner, over which waves must be at least 0\.137 m long; leave out shorter ones",
+    ):
+        exact.PackedHulls(hulls, Water(waves=RegularWave(1e-4, wavelength=0.99 * shortest)))
+    exact.PackedHulls(hulls, Water(waves=RegularWave(1e-4, wavelength=1.01 * shortest)))
+    # a wave of no height is none
+    exact.PackedHulls(hulls, Water(waves=RegularWave(0.0, wavelength=0.02)))
+
+
+@pytest.mark.parametrize(
+    "tolerance", [0.0, -1e-4, 1e-300, 2.0, float("nan"), True, "fine", 10**400]
+)
 def test_a_tolerance_that_is_none_is_told(tolerance):
-    with pytest.raises(MethodError, match="it must be a part of the volume, above 0 and at most 1"):
+    with pytest.raises(
+        MethodError, match="it must be a part of the volume, at least 1e-08 and at most 1"
+    ):
         Exact(tolerance=tolerance)
 
 

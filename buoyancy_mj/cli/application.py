@@ -3,6 +3,8 @@
 import errno
 import functools
 import inspect
+import io
+import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -13,7 +15,7 @@ import typer
 
 from buoyancy_mj import __version__
 from buoyancy_mj.cli.console import err, print_line
-from buoyancy_mj.cli.flags import collect_flags, spread_flags
+from buoyancy_mj.cli.flags import check_texts, collect_flags, spread_flags
 from buoyancy_mj.cli.signals import Stop, raise_later, raise_signals
 from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import BuoyancyError
@@ -25,7 +27,8 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
     """Register a function as a command of the application.
 
     A parameter whose type is a dataclass of flags becomes one flag for each field, see
-    `spread_flags`. An error of this package ends the command with one sentence and exit status 1.
+    `spread_flags`. Texts of several lines, or not in Unicode, are refused. An error of this package
+    ends the command with one sentence and exit status 1.
 
     Args:
         name: name of the command; that of the function if None.
@@ -33,13 +36,14 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
 
     def register(function: Callable[..., None]) -> Callable[..., None]:
         signature = inspect.signature(function)
+        spread = spread_flags(signature)
 
         @functools.wraps(function)
         def run(**values: Any) -> None:
             with _report_errors():
+                check_texts(spread, values)
                 function(**collect_flags(signature, values))
 
-        spread = spread_flags(signature)
         run.__signature__ = spread  # type: ignore[attr-defined]
         run.__annotations__ = {p.name: p.annotation for p in spread.parameters.values()}
         return app.command(name)(run)
@@ -78,6 +82,10 @@ def _report_errors() -> Iterator[None]:
         warnings.showwarning = _print_note
         # MuJoCo's own warnings would go to a file in the working folder
         mujoco.set_mju_user_warning(_print_mujoco_warning)
+        # what a terminal has no letters for is shown by its number
+        for stream in (sys.stdout, sys.stderr):
+            if isinstance(stream, io.TextIOWrapper):
+                stream.reconfigure(errors="backslashreplace")
         try:
             with raise_signals(), raise_causes():
                 yield
@@ -89,8 +97,8 @@ def _report_errors() -> Iterator[None]:
             # a reader that has gone wants no more, and typer knows that
             if error.errno == errno.EPIPE:
                 raise
-            file = "" if error.filename is None else f"'{error.filename}': "
-            _fail(f"cannot read or write: {file}{error.strerror or error}", error)
+            what = "the output" if error.filename is None else f"'{error.filename}'"
+            _fail(f"{what} cannot be read or written: {error.strerror or error}", error)
         except Stop as stop:
             raise typer.Exit(stop.status) from None
         except KeyboardInterrupt:

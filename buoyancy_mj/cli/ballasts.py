@@ -74,9 +74,12 @@ def ballast_(
         where = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
         print_line(out, f"{item.label}: {item.mass:.4g} kg of {item.kind} at {where}")
     at = result.hydrostatics
+    carried = at.carried_mass
+    part = f", of which gravity compensation carries {carried:.4g} kg" if carried else ""
+    where = f"draft {at.draft:.4g} m" if draft is not None else "under water"
     print_line(
         out,
-        f"{result.mass:.4g} kg added, {at.mass:.4g} kg in all; draft {at.draft:.4g} m, "
+        f"{result.mass:.4g} kg added, {at.mass + at.carried_mass:.4g} kg in all{part}; {where}: "
         f"BG {at.BG:.4g} m, GM {at.GM:.4g} m, reserve {at.reserve:.4g} kg",
     )
     if out_file is not None:

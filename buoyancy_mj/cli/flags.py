@@ -1,9 +1,9 @@
 """Flags that several commands share, as dataclasses whose fields become flags."""
 
 import dataclasses
+import errno
 import inspect
 import json
-import tomllib
 import typing
 import unicodedata
 from collections.abc import Iterator, Mapping
@@ -12,13 +12,15 @@ from typing import Annotated, Any
 
 import typer
 
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import SceneError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.records import field_docs
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.settings.texts import parse_toml
 from buoyancy_mj.settings.toml import water_from_table
+from buoyancy_mj.values import read_text
 
 SceneArgument = Annotated[
     str, typer.Argument(help="A scene file (.toml), or the name of a scene that ships; see 'list'.")
@@ -35,6 +37,10 @@ WaterOption = Annotated[
         metavar="KEY=VALUE", help="Describe the still water: density=1025 [kg/m^3], level=0.2 [m]."
     ),
 ]
+
+
+STILL = ("density", "level")
+"""Keys of still water."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -126,16 +132,46 @@ def parse_still_water(settings: list[str] | None) -> Water:
     """The still water that texts KEY=VALUE describe.
 
     Raises:
-        SceneError: a text makes no sense.
+        SceneError: a text makes no sense, or describes what still water does not have.
     """
     words = settings or []
+    what = f"--water {describe(' '.join(words))}"
     try:
-        table = tomllib.loads("\n".join(words))
-    except tomllib.TOMLDecodeError as error:
-        raise SceneError(
-            f"--water {' '.join(words)}: {error}; write KEY=VALUE, as in density=1025"
-        ) from error
+        table = parse_toml("\n".join(words), what)
+    except SceneError as error:
+        raise SceneError(f"{error}; write KEY=VALUE, as in density=1025") from error
+    if len(table) < len(words):
+        raise SceneError(f"{what} says nothing; write KEY=VALUE, as in density=1025")
+    for key in table:
+        if key not in STILL:
+            raise SceneError(f"--water: unknown key {describe(key)}; {choices(key, STILL)}")
     return water_from_table(table, "--water")
+
+
+def check_texts(signature: inspect.Signature, values: Mapping[str, Any]) -> None:
+    """Check texts among the values of spread flags: one line of Unicode, and names of files short.
+
+    Raises:
+        SceneError: one is not; the message names the flag.
+    """
+    for parameter in signature.parameters.values():
+        value = values.get(parameter.name)
+        for text in value if isinstance(value, list) else [value]:
+            if isinstance(text, str | Path):
+                read_text(SceneError, flag_of(parameter), str(text))
+            if isinstance(text, Path):
+                _check_length(flag_of(parameter), text)
+
+
+def _check_length(flag: str, path: Path) -> None:
+    """Refuse a path that no file can have here."""
+    try:
+        path.lstat()
+    except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            raise SceneError(
+                f"{flag} is {describe(str(path))}; it is too long for the name of a file"
+            ) from error
 
 
 def spread_flags(signature: inspect.Signature) -> inspect.Signature:
@@ -163,6 +199,16 @@ def collect_flags(signature: inspect.Signature, values: Mapping[str, Any]) -> di
             fields = {field.name: rest.pop(field.name) for field in dataclasses.fields(cls)}
             arguments[parameter.name] = cls(**fields)
     return rest | arguments
+
+
+def flag_of(parameter: inspect.Parameter) -> str:
+    """How users call a spread flag: '--set', or 'SCENE' for an argument."""
+    (option,) = parameter.annotation.__metadata__
+    if isinstance(option, typer.models.ArgumentInfo):
+        return parameter.name.upper()
+    # within Annotated, Typer takes the first name for a default
+    names = (option.default, *(option.param_decls or ()), f"--{parameter.name.replace('_', '-')}")
+    return next(name for name in names if isinstance(name, str) and name.startswith("--"))
 
 
 def _is_flags(annotation: Any) -> bool:

@@ -15,6 +15,9 @@ from buoyancy_mj.scenes import catalog, ranges
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.sweep import Sweep
 
+MOST_THREADS = 1024
+"""Most threads that step at once."""
+
 
 @command()
 def sweep(
@@ -37,9 +40,10 @@ def sweep(
         int | None,
         typer.Option(min=1, help="Draw this many random values between a and b, without a grid."),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the random draws.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the random draws.")] = 0,
     threads: Annotated[
-        int, typer.Option(min=0, help="Step on this many threads; 0 is one per core.")
+        int,
+        typer.Option(min=0, max=MOST_THREADS, help="Step on this many threads; 0 is one per core."),
     ] = 0,
 ) -> None:
     """Run a scene many times, over a grid or random draws.

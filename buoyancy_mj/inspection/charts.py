@@ -23,7 +23,9 @@ SOFTWARE = "buoyancy_mj"
 
 
 def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
-    """Draw charts of all vessels as PNG files in a folder; return each caption and its file.
+    """Draw charts of vessels as PNG files in a folder; return each caption and its file.
+
+    A vessel with a hull whose mesh is refused has none.
 
     Raises:
         OSError: a file cannot be written, or there is one that was not made here.
@@ -31,6 +33,8 @@ def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
     files = []
     with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
         for vessel in inspection.vessels:
+            if vessel.refused:
+                continue
             name = vessel.total.body
             stem = name.replace("/", "-").replace(" ", "_")
             for kind, caption, figure in _draw_figures(vessel):

@@ -10,13 +10,12 @@ kernel of another file changes that it has built in. So what is older than any s
 
 import contextlib
 import os
-import sys
 from pathlib import Path
-from typing import Any
 
 from numba.core import event
 
 from buoyancy_mj.kernels.caches import list_caches
+from buoyancy_mj.kernels.progress import CompilationProgress
 
 _FOLDER = Path(__file__).parent
 
@@ -36,24 +35,5 @@ def _drop_stale(folder: Path) -> None:
                     compiled.unlink()
 
 
-class _Patience(event.Listener):  # type: ignore[misc]
-    """Says once that compiling takes a while, when a kernel is compiled anew."""
-
-    def __init__(self) -> None:
-        self._told = False
-
-    def on_start(self, event: Any) -> None:
-        """A function begins to be compiled."""
-        if not self._told and event.data["dispatcher"].py_func.__module__.startswith(__name__):
-            self._told = True
-            sys.stderr.write(
-                "buoyancy_mj: compiling, once per installation; this takes about half a minute\n"
-            )
-            sys.stderr.flush()
-
-    def on_end(self, event: Any) -> None:
-        """It is done."""
-
-
 _drop_stale(_FOLDER)
-event.register("numba:compile", _Patience())
+event.register("numba:compile", CompilationProgress())

@@ -1,22 +1,20 @@
 """`Damping`: the user's choice of how the water slows bodies down."""
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from typing import Any
 
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import ModelError, describe
+from buoyancy_mj.values import read_truth, set_number
+
+LARGEST = 1e6
+"""Greatest coefficient, Froude number or viscosity; none in nature comes near it."""
 
 
-def _check_numbers(options: Any) -> None:
-    """Refuse a field that is not a finite number of at least 0."""
+def _set_numbers(options: Any) -> None:
+    """Keep each field as a number from 0 to `LARGEST`."""
     for field in dataclasses.fields(options):
-        value = getattr(options, field.name)
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not number or not 0.0 <= value < math.inf:
-            raise ModelError(
-                f"damping {field.name} is {value!r}; it must be a finite number of at least 0"
-            )
+        set_number(options, ModelError, field.name, prefix="damping ", least=0.0, most=LARGEST)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -49,7 +47,7 @@ class Silhouette:
     """Froude number at which linear and quadratic damping are equal; 0 for no linear damping."""
 
     def __post_init__(self) -> None:
-        _check_numbers(self)
+        _set_numbers(self)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -70,7 +68,7 @@ class Panels:
     """Kinematic viscosity [m^2/s]: of sea water at 15 degrees Celsius (ITTC 7.5-02-01-03)."""
 
     def __post_init__(self) -> None:
-        _check_numbers(self)
+        _set_numbers(self)
         if self.viscosity == 0.0:
             raise ModelError(
                 "damping viscosity is 0; panels need one, "
@@ -114,7 +112,8 @@ class Damping:
     def __post_init__(self) -> None:
         if not isinstance(self.viscous, Silhouette | Panels | None):
             raise ModelError(
-                f"damping viscous is {self.viscous!r}; it must be Silhouette(), Panels() or None"
+                f"damping viscous is {describe(self.viscous)}; "
+                "it must be Silhouette(), Panels() or None"
             )
-        if not isinstance(self.radiation, bool):
-            raise ModelError(f"damping radiation is {self.radiation!r}; it must be true or false")
+        radiation = read_truth(ModelError, "damping radiation", self.radiation)
+        object.__setattr__(self, "radiation", radiation)

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.values import read_array
 
 NEGATIVE = -1e-9
 """Least eigenvalue, as a part of the largest entry, that is still rounding."""
@@ -19,22 +20,11 @@ def parse_matrix(value: ArrayLike, what: str) -> NDArray[np.float64]:
         what: how messages call it, as "the added mass of body 'hull'".
 
     Raises:
-        ModelError: another number of entries, one that is not finite, or a matrix that is not
-            symmetric or has a negative eigenvalue.
+        ModelError: another shape, an entry that is no real number or not finite, or a matrix that
+            is not symmetric or has a negative eigenvalue.
     """
-    try:
-        numbers = np.asarray(value, float)
-    except (TypeError, ValueError) as error:
-        raise ModelError(f"{what} is {value!r}; it must be 6 numbers or a 6 x 6 matrix") from error
-    if not np.isfinite(numbers).all():
-        raise ModelError(
-            f"{what} holds {numbers[~np.isfinite(numbers)][0]}; its numbers must be finite"
-        )
-    if numbers.size not in (6, 36):
-        raise ModelError(
-            f"{what} has {numbers.size} numbers; it must be 6, its diagonal, or all 36"
-        )
-    matrix = np.diag(numbers.ravel()) if numbers.size == 6 else numbers.reshape(6, 6)
+    numbers = read_array(ModelError, what, value, (6,), (36,), (6, 6))
+    matrix = np.diag(numbers) if numbers.size == 6 else numbers.reshape(6, 6)
     scale = np.sqrt(np.abs(np.outer(np.diag(matrix), np.diag(matrix)))) + 1e-12
     if (np.abs(matrix - matrix.T) > ASYMMETRY * scale).any():
         raise ModelError(f"{what} is not symmetric; average it with its transpose")

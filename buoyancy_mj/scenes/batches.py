@@ -16,6 +16,8 @@ from buoyancy_mj.scenes.trajectory import Trajectory
 
 BATCH_MEMORY = 2e8
 """Memory that the trajectories of a batch may take [bytes]."""
+MOST_MEMORY = 2e9
+"""Memory that the trajectory of one run may take [bytes]; a longer run goes alone, without it."""
 BLOCK_TIME = 0.25
 """About how long a batch steps before Ctrl-C is asked for [s]."""
 _BAD_VALUES = [int(warning) for warning in QUANTITIES]
@@ -43,7 +45,7 @@ def run_simulations(
         for start in range(0, len(group), size):
             numbers = group[start : start + size]
             members = [simulations[number] for number in numbers]
-            if plugin_instances(members[0].model):
+            if plugin_instances(members[0].model) and _trajectory_size(members[0]) <= MOST_MEMORY:
                 reasons = run_batch(members, threads)
             else:
                 reasons = [_run_alone(member) for member in members]
@@ -85,7 +87,10 @@ def run_batch(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     for i, simulation in enumerate(simulations):
         if i not in stepping.failures:
             trajectory = Trajectory(*(values[i] for values in stepping.trajectories))
-            simulation.replay(trajectory, wall_time)
+            try:
+                simulation.replay(trajectory, wall_time)
+            except DivergenceError as error:
+                stepping.failures[i] = str(error)
     return [stepping.failures.get(i, "") for i in range(len(simulations))]
 
 

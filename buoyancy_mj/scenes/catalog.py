@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from buoyancy_mj.errors import BuoyancyError, ModelError, SceneError, choices
+from buoyancy_mj.errors import BuoyancyError, ModelError, SceneError, choices, describe
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -84,9 +84,10 @@ def _find(
         return path
     if is_folder:
         raise error(
-            f"{kind} '{name}' is a folder; give a file, or the name of one that ships: "
+            f"{kind} {describe(name)} is a folder; give a file, or the name of one that ships: "
             f"{', '.join(shipped)}"
         )
     raise error(
-        f"there is no {kind} '{name}', neither a file nor one that ships; {choices(name, shipped)}"
+        f"there is no {kind} {describe(name)}, neither a file nor one that ships; "
+        f"{choices(name, shipped)}"
     ) from FileNotFoundError(name)

@@ -50,6 +50,9 @@ class Journal:
         """The columns."""
         self.rows: dict[int, dict[str, str]] = {}
         """Rows by the number of the run."""
+        self._path = path
+        if path.exists() and not path.is_file():
+            raise SweepError(f"cannot keep results in '{path}': it is no file; give another --out")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             # a name that nobody gave may be a link to anything

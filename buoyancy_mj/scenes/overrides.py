@@ -2,8 +2,9 @@
 
 from typing import Any
 
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import SceneError, SceneTypeError, describe
 from buoyancy_mj.settings.texts import parse_value
+from buoyancy_mj.values import read_text
 
 _VECTORS = (
     "cog_shift",
@@ -27,11 +28,13 @@ def apply_setting(table: dict[str, Any], setting: str) -> None:
     key, equals, text = setting.partition("=")
     if not equals or not key.strip():
         raise SceneError(
-            f"'{setting}' is no setting; write KEY=VALUE, for example duration=3 or water.level=0.2"
+            f"{describe(setting)} is no setting; write KEY=VALUE, for example duration=3 or "
+            "water.level=0.2"
         )
-    value = parse_value(text)
-    *path, last = key.strip().split(".")
-    if ".".join(path) in _VECTORS:
+    key = read_text(SceneError, "the key of a setting", key.strip())
+    value = parse_value(text, key)
+    *path, last = key.split(".")
+    if _is_vector(path):
         _add_vector(table, path)
 
     # the table or list that holds the value
@@ -45,13 +48,23 @@ def apply_setting(table: dict[str, Any], setting: str) -> None:
     elif isinstance(holder, dict):
         holder[last] = value
     else:
-        raise SceneError(f"cannot set '{key}': '{'.'.join(path)}' is {holder!r}, no table")
+        raise SceneTypeError(
+            f"cannot set '{key}': '{'.'.join(path)}' is {describe(holder)}, no table"
+        )
+
+
+def _is_vector(path: list[str]) -> bool:
+    """Whether a path leads to a vector, of the scene or of one of its vehicles."""
+    of_vehicle = path[2:] if path[:1] == ["vehicles"] else path
+    return ".".join(of_vehicle) in _VECTORS
 
 
 def _add_vector(table: dict[str, Any], path: list[str]) -> None:
     """Add a vector of zeros at the end of a path, where there is none."""
     *above, name = path
-    holder = table.setdefault(above[0], {}) if above else table
+    holder: Any = table
+    for depth, part in enumerate(above):
+        holder = _step(holder, part, ".".join(above[: depth + 1]))
     if isinstance(holder, dict):
         holder.setdefault(name, [0.0, 0.0, 0.0])
 
@@ -61,12 +74,15 @@ def _step(holder: Any, part: str, key: str) -> Any:
     if isinstance(holder, list):
         return holder[_index(holder, part, key)]
     if not isinstance(holder, dict):
-        raise SceneError(f"cannot set '{key}': it lies in {holder!r}, no table")
+        raise SceneTypeError(f"cannot set '{key}': it lies in {describe(holder)}, no table")
     return holder.setdefault(part, {})
 
 
 def _index(entries: list[Any], part: str, key: str) -> int:
     """The place in a list that one part of a path names."""
-    if not (part.isascii() and part.isdigit()) or int(part) >= len(entries):
-        raise SceneError(f"cannot set '{key}': the list has {len(entries)} entries, counted from 0")
-    return int(part)
+    places = {str(place): place for place in range(len(entries))}
+    if part not in places:
+        raise SceneTypeError(
+            f"cannot set '{key}': the list has {len(entries)} entries, counted from 0"
+        )
+    return places[part]

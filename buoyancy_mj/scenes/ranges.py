@@ -7,7 +7,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from buoyancy_mj.errors import SweepError
+from buoyancy_mj.errors import SweepError, describe
+from buoyancy_mj.values import read_text
+
+MOST_RUNS = 1_000_000
+"""Most runs of one sweep."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -36,14 +40,14 @@ def parse_range(text: str) -> FieldRange:
     Raises:
         SweepError: the text is neither.
     """
-    key, _, span = text.partition("=")
+    key, _, span = read_text(SweepError, "--over", text).partition("=")
     try:
         low, high, count = _parse_span(span)
         if not key.strip():
             raise ValueError
     except ValueError:
         raise SweepError(
-            f"--over is '{text}'; it must be KEY=a:b:n, n values from a to b, as "
+            f"--over is {describe(text)}; it must be KEY=a:b:n, n values from a to b, as "
             "start.position.2=0:0.5:6, or KEY=a:b with --draws"
         ) from None
     return FieldRange(key.strip(), low, high, count)
@@ -53,7 +57,7 @@ def grid(ranges: Sequence[FieldRange]) -> list[tuple[float, ...]]:
     """All combinations of values, the last field fastest.
 
     Raises:
-        SweepError: a range without a number of values.
+        SweepError: a range without a number of values, or more than `MOST_RUNS` combinations.
     """
     for one in ranges:
         if one.count == 0:
@@ -61,22 +65,46 @@ def grid(ranges: Sequence[FieldRange]) -> list[tuple[float, ...]]:
                 f"--over {one.key}={one.low:g}:{one.high:g} has no number of values; add it (:n), "
                 "or give --draws"
             )
+    _check_runs(math.prod(one.count for one in ranges))
     return list(itertools.product(*(one.values for one in ranges)))
 
 
 def draws(ranges: Sequence[FieldRange], count: int, seed: int) -> list[tuple[float, ...]]:
-    """Random combinations of values, each uniform in its range; the same for the same seed."""
+    """Random combinations of values, each uniform in its range; the same for the same seed.
+
+    Raises:
+        SweepError: a range with a number of values, which draws do not use, more than `MOST_RUNS`
+            draws, or a seed below 0.
+    """
+    for one in ranges:
+        if one.count:
+            raise SweepError(
+                f"--over {one.key}={one.low:g}:{one.high:g}:{one.count} has a number of values, "
+                f"which --draws does not use; leave out ':{one.count}', or leave out --draws"
+            )
+    _check_runs(count)
+    if seed < 0:
+        raise SweepError(f"--seed is {describe(seed)}; it must be at least 0")
     low = np.array([one.low for one in ranges])
     high = np.array([one.high for one in ranges])
     rows = np.random.default_rng(seed).uniform(low, high, (count, len(ranges)))
     return [tuple(row) for row in rows.tolist()]
 
 
+def _check_runs(count: int) -> None:
+    """Refuse more runs than a sweep can keep."""
+    if count > MOST_RUNS:
+        raise SweepError(
+            f"the sweep would have {describe(count)} runs; it may have {MOST_RUNS} at most, so "
+            "give fewer values (--over KEY=a:b:n) or --draws"
+        )
+
+
 def _parse_span(span: str) -> tuple[float, float, int]:
     """The numbers of 'a:b:n', or of 'a:b' with n = 0; a ValueError where they make no sense."""
     first, last, *counts = span.split(":")
     low, high = float(first), float(last)
-    if not (math.isfinite(low) and math.isfinite(high)):
+    if not math.isfinite(high - low):
         raise ValueError
     if not counts:
         return low, high, 0

@@ -3,26 +3,30 @@
 import dataclasses
 import functools
 import hashlib
+import warnings
 from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from buoyancy_mj.errors import BuoyancyError, SceneError, SweepError
+from buoyancy_mj.errors import (
+    BuoyancyError,
+    BuoyancyWarning,
+    SceneError,
+    SceneTypeError,
+    SweepError,
+)
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.batches import run_simulations
-from buoyancy_mj.scenes.frames import Summary
 from buoyancy_mj.scenes.journal import Journal, write_parquet
 from buoyancy_mj.scenes.scene import Scene, read_scene
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.summary import list_values
 
 BATCH_SIZE = 64
 """Most runs in a batch: a sweep that is killed loses no more."""
-_SUMMARY = tuple(
-    field.name
-    for field in dataclasses.fields(Summary)
-    if field.name not in ("scene", "wall_time", "real_time_factor")
-)
-"""Fields of the summary that become columns."""
+_NO_COLUMNS = ("scene", "wall_time", "real_time_factor")
+"""Values of the summary that become no columns: a digest stands for the scene, and time varies."""
 _OF_FILES = ("MuJoCo cannot read", "Error opening file", "ould not allocate")
 """Words of errors that have to do with files or memory, and not with the values of a run."""
 
@@ -97,15 +101,37 @@ class Sweep:
     @property
     def _header(self) -> list[str]:
         """Columns of the results."""
-        summary = [name for name in _SUMMARY if name not in self.keys]
-        return ["run", "scene", *self.keys, "status", "reason", *summary]
+        return ["run", "scene", *self.keys, "status", "reason", *self._results]
+
+    @functools.cached_property
+    def _results(self) -> list[str]:
+        """Columns of the summary; a sweep with several vehicles has NAME.column for each."""
+        names = list_values(self._name_vehicles())
+        return [name for name in names if name not in (*_NO_COLUMNS, *self.keys)]
+
+    def _name_vehicles(self) -> list[str]:
+        """Names of the vehicles, as in the first run that can be assembled."""
+        names = [""]
+        for run in range(len(self.values)):
+            try:
+                scene = self._read_scene(run)
+                names = [str(entry.name) for entry in scene.entries]
+                with warnings.catch_warnings():
+                    # the run itself will give them
+                    warnings.simplefilter("ignore", BuoyancyWarning)
+                    return [group.name for group in assemble(scene).afloat]
+            except BuoyancyError:
+                # the row of that run will say why
+                continue
+        return names
 
     @functools.cached_property
     def _digest(self) -> str:
         """A short text of all that the runs have in common."""
         scene = read_scene(self.path, self.settings)
-        vehicle = catalog.model_path(scene.vehicle, scene.folder)
-        common = repr((self.path.read_bytes(), vehicle.read_bytes(), self.settings, self.keys))
+        models = [catalog.model_path(entry.model, scene.folder) for entry in scene.entries]
+        files = [path.read_bytes() for path in (self.path, *models)]
+        common = repr((*files, self.settings, self.keys))
         return f"{self.path.stem} {hashlib.blake2b(common.encode(), digest_size=4).hexdigest()}"
 
     def _check_rows(self, path: Path, rows: Mapping[int, Mapping[str, str]]) -> None:
@@ -118,12 +144,14 @@ class Sweep:
                 )
 
     def _check_keys(self) -> None:
-        """Refuse a key that the scene lacks: every run would fail for it."""
+        """Refuse a key that the scene lacks, or that takes no numbers: every run would fail."""
         try:
             self._read_scene(0)
-        except SceneError as error:
-            if "unknown key" in str(error):
-                raise
+        except SceneTypeError:
+            raise
+        except SceneError:
+            # other values may make sense
+            return
 
     def _read_scene(self, run: int) -> Scene:
         """The scene with the values of one run."""
@@ -158,8 +186,8 @@ class Sweep:
             "reason": " ".join(reason.split()),
         }
         row |= dict(zip(self.keys, self.values[run], strict=True))
-        results = dataclasses.asdict(simulation.summary()) if simulation and not reason else {}
-        return row | {name: results.get(name) for name in _SUMMARY if name not in self.keys}
+        results = simulation.summary().values() if simulation and not reason else {}
+        return row | {name: results.get(name) for name in self._results}
 
 
 class _UntriedError(Exception):

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import WaterError
+from buoyancy_mj.errors import WaterError, describe
+from buoyancy_mj.values import ANY, read_array
 
 Velocity = tuple[float, float, float]
 """A velocity (3,) [m/s], world frame."""
@@ -88,8 +89,8 @@ class CurrentSeries:
             WaterError: the file cannot be read, has other columns, or holds what is no number.
         """
         try:
-            lines = Path(path).read_text().splitlines()
-        except (OSError, UnicodeDecodeError) as error:
+            lines = Path(path).read_text(encoding="utf-8").splitlines()
+        except (OSError, ValueError) as error:
             raise WaterError(f"the current in '{path}' cannot be read: {error}") from error
 
         rows: list[tuple[float, Velocity]] = []
@@ -128,15 +129,12 @@ def parse_velocity(current: object) -> Velocity:
         WaterError: it is no such velocity.
     """
     try:
-        velocity = np.asarray(current, float)
-    except (TypeError, ValueError):
-        velocity = np.array(np.nan)
-    if velocity.shape != (3,) or not np.isfinite(velocity).all():
+        x, y, z = read_array(WaterError, "current", current, (3,)).tolist()
+    except WaterError:
         raise WaterError(
-            f"current is {current!r}; "
+            f"current is {describe(current)}; "
             "it must be three finite numbers [m/s], a CurrentProfile or a CurrentSeries"
-        )
-    x, y, z = velocity.tolist()
+        ) from None
     return x, y, z
 
 
@@ -153,9 +151,13 @@ def _parse_row(line: str, where: str, *, is_heading: bool) -> tuple[float, Veloc
     except ValueError:
         if is_heading:
             return None
-        raise WaterError(f"{where} is '{line}'; needed are numbers: time, u, v, w") from None
+        raise WaterError(
+            f"{where} is {describe(line)}; needed are numbers: time, u, v, w"
+        ) from None
     if len(values) not in (3, 4) or not all(map(math.isfinite, values)):
-        raise WaterError(f"{where} is '{line}'; needed are 3 or 4 finite numbers: time, u, v, w")
+        raise WaterError(
+            f"{where} is {describe(line)}; needed are 3 or 4 finite numbers: time, u, v, w"
+        )
     time, u, v, w = [*values, 0.0][:4]
     return time, (u, v, w)
 
@@ -171,11 +173,12 @@ def _check_table(
         velocities: the second column (n, 3) [m/s].
     """
     # as many numbers in one as in the other
-    try:
-        at, speeds = np.asarray(places, float), np.asarray(velocities, float)
-    except (TypeError, ValueError):
-        at = speeds = np.array(np.nan)
-    if at.ndim != 1 or not at.size or speeds.shape != (at.size, 3):
+    what = f"the current's {name}"
+    at = read_array(WaterError, what, places, (ANY,), finite=False)
+    speeds = read_array(
+        WaterError, "the current's velocities", velocities, (ANY, 3), (0,), finite=False
+    )
+    if not at.size or speeds.shape != (at.size, 3):
         raise WaterError(
             f"a current by {name} needs as many {name} as velocities of three numbers each, "
             f"at least one; it has {at.size} {name}, and velocities of shape {speeds.shape}"

@@ -2,61 +2,49 @@
 
 import math
 
-import numpy as np
-
-from buoyancy_mj.errors import WaterError
+from buoyancy_mj.errors import WaterError, describe
+from buoyancy_mj.values import is_number, read_number
 
 SMALLEST = 1e-6
-"""Least frequency, period, wavelength or depth, in SI units; none in nature comes near it."""
+"""Least period, frequency or depth, in SI units; none in nature comes near it."""
 LARGEST = 1e6
-"""Greatest frequency, period, wavelength or level, in SI units; none in nature comes near it."""
+"""Greatest period, wavelength or level, in SI units; none in nature comes near it."""
+STRONGEST = 1e12
+"""Greatest acceleration of gravity in a dispersion relation [m/s^2]."""
+SHORTEST = 0.017
+"""Least length of a wave [m].
+
+Shorter ripples are held by surface tension more than by gravity (Lamb, Hydrodynamics, 1932, art.
+267: 1.7 cm on clean water)."""
 
 
-def check_number(
-    name: str,
-    value: object,
-    *,
-    above: float = -math.inf,
-    least: float = -math.inf,
-    most: float = math.inf,
-) -> None:
-    """Refuse a value that is not a finite number in a range.
+def read_positive(name: str, value: object, what: str) -> float:
+    """A number above 0, which may be infinite, as a float.
 
-    Raises:
-        WaterError: the value is none, or it is not greater than `above`, less than `least` or
-            greater than `most`; the message calls it `name`.
-    """
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, int | float | np.number)
-        or not math.isfinite(value)
-    ):
-        raise WaterError(f"{name} is {value!r}; it must be a finite number")
-    if not value > above:
-        raise WaterError(f"{name} is {value}; it must be above {above:g}")
-    if not value >= least:
-        raise WaterError(f"{name} is {value}; it must be at least {least:g}")
-    if not value <= most:
-        raise WaterError(f"{name} is {value}; it must be at most {most:g}")
-
-
-def check_whole_number(name: str, value: object, least: int, most: int) -> None:
-    """Refuse a value that is not a whole number from `least` to `most`.
+    Args:
+        name: what messages call the value.
+        value: any value.
+        what: what it must be, in words.
 
     Raises:
-        WaterError: the message calls the value `name`.
+        WaterError: it is none.
     """
-    if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
-        raise WaterError(f"{name} is {value!r}; it must be a whole number from {least} to {most}")
+    if is_number(value) and value == math.inf:
+        return math.inf
+    try:
+        return read_number(WaterError, name, value, above=0.0)
+    except WaterError:
+        raise WaterError(f"{name} is {describe(value)}; it must be {what}") from None
 
 
-def check_depth(value: object) -> None:
-    """Refuse a value that is no depth of water; infinity is deep water.
+def read_depth(value: object) -> float:
+    """A depth of water [m]; infinity is deep water.
 
     Raises:
         WaterError: the value is no number, or less than `SMALLEST`.
     """
-    if isinstance(value, bool) or not isinstance(value, int | float) or not value >= SMALLEST:
-        raise WaterError(
-            f"wave depth is {value!r}; it must be at least {SMALLEST:g} m (inf is deep water)"
-        )
+    what = f"at least {SMALLEST:g} m (inf is deep water)"
+    depth = read_positive("wave depth", value, what)
+    if depth < SMALLEST:
+        raise WaterError(f"wave depth is {describe(value)}; it must be {what}")
+    return depth

@@ -12,12 +12,14 @@ from buoyancy_mj.errors import WaterError
 from buoyancy_mj.sea.distributions import jonswap_moments, jonswap_shape, spreading_angles
 from buoyancy_mj.sea.ranges import (
     LARGEST,
+    SHORTEST,
     SMALLEST,
-    check_depth,
-    check_number,
-    check_whole_number,
+    STRONGEST,
+    read_depth,
+    read_positive,
 )
 from buoyancy_mj.sea.waves import GRAVITY, wavenumber
+from buoyancy_mj.values import read_number, read_whole_number, set_number
 
 MOST_COMPONENTS = 10_000
 """Most waves of one sea."""
@@ -78,27 +80,35 @@ class JonswapSea(IrregularSea):
     """Height of the peak over that of Pierson and Moskowitz's spectrum; 1 to 20."""
 
     def __post_init__(self) -> None:
-        check_number("significant_height", self.significant_height, least=0.0)
-        check_number("peak_period", self.peak_period, least=SMALLEST, most=LARGEST)
-        check_number("gamma", self.gamma, least=1.0, most=20.0)
-        check_number("direction", self.direction)
-        check_number("gravity", self.gravity, above=0.0)
-        check_depth(self.depth)
-        check_whole_number("components", self.components, 1, MOST_COMPONENTS)
-        check_whole_number("seed", self.seed, 0, 2**63 - 1)
-        if (
-            isinstance(self.spreading, bool)
-            or not isinstance(self.spreading, int | float)
-            or not self.spreading > 0.0
-        ):
-            raise WaterError(
-                f"spreading is {self.spreading!r}; "
-                "it must be an exponent above 0, or inf for long crests"
-            )
+        # numbers
+        set_number(self, WaterError, "significant_height", least=0.0, most=LARGEST)
+        set_number(self, WaterError, "peak_period", least=SMALLEST, most=LARGEST)
+        set_number(self, WaterError, "gamma", least=1.0, most=20.0)
+        set_number(self, WaterError, "direction")
+        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
+        whole = {"components": (1, MOST_COMPONENTS), "seed": (0, 2**63 - 1)}
+        for name, (least, most) in whole.items():
+            number = read_whole_number(WaterError, name, getattr(self, name), least, most)
+            object.__setattr__(self, name, number)
+        object.__setattr__(self, "depth", read_depth(self.depth))
+        spreading = read_positive(
+            "spreading", self.spreading, "an exponent above 0, or inf for long crests"
+        )
+        object.__setattr__(self, "spreading", spreading)
+
+        # what they mean together
         if self.significant_height > self.depth:
             raise WaterError(
                 f"significant_height is {self.significant_height} m in water {self.depth} m deep; "
                 "such waves break far outside: make them lower, or the water deeper"
+            )
+        k = wavenumber(2.0 * math.pi / self.peak_period, self.depth, self.gravity)
+        shortest = max(SHORTEST, self.significant_height)
+        if 2.0 * math.pi / k < shortest:
+            raise WaterError(
+                f"a sea with a peak_period of {self.peak_period:g} s and a significant_height of "
+                f"{self.significant_height:g} m would have waves {2.0 * math.pi / k:.3g} m long at "
+                f"its peak; they must be at least {SHORTEST} m long, and longer than high"
             )
 
     def spectrum(self, omega: ArrayLike) -> NDArray[np.float64]:
@@ -135,7 +145,7 @@ class JonswapSea(IrregularSea):
         directions = self._directions(stream)
         k = np.array([wavenumber(omega, self.depth, self.gravity) for omega in omegas])
         amplitude = self.significant_height / 4.0 * math.sqrt(2.0 / n)
-        return np.column_stack(
+        rows = np.column_stack(
             [
                 np.full(n, amplitude),
                 k * np.cos(directions),
@@ -145,6 +155,9 @@ class JonswapSea(IrregularSea):
                 np.full(n, self.depth),
             ]
         )
+        # the same for all who ask
+        rows.setflags(write=False)
+        return rows
 
     def _frequencies(self) -> NDArray[np.float64]:
         """Root mean square frequency of each band of equal energy (components,) [rad/s]."""
@@ -205,9 +218,13 @@ class PiersonMoskowitzSea(IrregularSea):
 
     def __post_init__(self) -> None:
         if isinstance(self.peak_period, float) and math.isnan(self.peak_period):
-            check_number("significant_height", self.significant_height, above=0.0)
-            check_number("gravity", self.gravity, above=0.0)
-            omega = (16.0 * ALPHA * self.gravity**2 / (5.0 * self.significant_height**2)) ** 0.25
+            height = read_number(
+                WaterError, "significant_height", self.significant_height, above=0.0
+            )
+            gravity = read_number(
+                WaterError, "gravity", self.gravity, least=SMALLEST, most=STRONGEST
+            )
+            omega = (16.0 * ALPHA / 5.0) ** 0.25 * math.sqrt(gravity / height)
             object.__setattr__(self, "peak_period", 2.0 * math.pi / omega)
 
         # this checks all the rest

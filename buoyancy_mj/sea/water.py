@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import WaterError
+from buoyancy_mj.errors import WaterError, describe
 from buoyancy_mj.kernels import waves as kernels
 from buoyancy_mj.sea.currents import (
     Current,
@@ -17,12 +17,15 @@ from buoyancy_mj.sea.currents import (
     current_rows,
     parse_velocity,
 )
-from buoyancy_mj.sea.ranges import LARGEST, check_number
+from buoyancy_mj.sea.ranges import LARGEST
 from buoyancy_mj.sea.spectra import IrregularSea
 from buoyancy_mj.sea.waves import GRAVITY, Wave
+from buoyancy_mj.values import ANY, read_array, set_number
 
 MOST_WAVES = 10_000
 """Most waves at once; each costs its time in every step."""
+DENSEST = 1e5
+"""Greatest density [kg/m^3]; no liquid comes near it."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -49,22 +52,22 @@ class Water:
 
     def __post_init__(self) -> None:
         # numbers
-        check_number("density", self.density, above=0.0)
-        check_number("level", self.level, least=-LARGEST, most=LARGEST)
+        set_number(self, WaterError, "density", above=0.0, most=DENSEST)
+        set_number(self, WaterError, "level", least=-LARGEST, most=LARGEST)
 
         # waves, as a tuple
         is_one = hasattr(self.waves, "rows") or not isinstance(self.waves, Sequence)
         waves = (self.waves,) if is_one else tuple(cast(Sequence[Wave], self.waves))
         for wave in waves:
-            if not hasattr(wave, "rows"):
+            if isinstance(wave, type) or not hasattr(wave, "rows"):
                 raise WaterError(
-                    f"{wave!r} is no wave; possible are RegularWave, JonswapSea, "
+                    f"{describe(wave)} is no wave; possible are RegularWave, JonswapSea, "
                     "PiersonMoskowitzSea and LevelOscillation"
                 )
         object.__setattr__(self, "waves", waves)
-        if len(self.rows) > MOST_WAVES:
+        if len(self._rows) > MOST_WAVES:
             raise WaterError(
-                f"the sea has {len(self.rows)} waves; it may have {MOST_WAVES} at most, "
+                f"the sea has {len(self._rows)} waves; it may have {MOST_WAVES} at most, "
                 "so leave out the smallest"
             )
 
@@ -79,12 +82,22 @@ class Water:
 
     @functools.cached_property
     def rows(self) -> NDArray[np.float64]:
-        """The components of all waves as rows (n, 6), see `Wave.rows`."""
-        return np.concatenate([np.zeros((0, 6)), *(wave.rows for wave in self._waves)])
+        """The components of all waves as rows (n, 6), see `Wave.rows`; read-only."""
+        return _read_only(self._rows)
 
     @functools.cached_property
     def current_rows(self) -> NDArray[np.float64]:
-        """The current as rows (n, 5), see `kernels.currents`."""
+        """The current as rows (n, 5), see `kernels.currents`; read-only."""
+        return _read_only(self._current_rows)
+
+    # kernels are compiled for arrays that can be written to
+
+    @functools.cached_property
+    def _rows(self) -> NDArray[np.float64]:
+        return np.concatenate([np.zeros((0, 6)), *map(_rows_of, self._waves)])
+
+    @functools.cached_property
+    def _current_rows(self) -> NDArray[np.float64]:
         return current_rows(self.current)
 
     @functools.cached_property
@@ -120,7 +133,7 @@ class Water:
         """
         xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         out = np.empty(xs.size)
-        kernels.elevations(self.rows, xs.ravel(), ys.ravel(), float(time), out)
+        kernels.elevations(self._rows, xs.ravel(), ys.ravel(), float(time), out)
         heights: NDArray[np.float64] = self.level + out.reshape(xs.shape)
         return heights
 
@@ -134,15 +147,18 @@ class Water:
         """
         xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
         out = np.empty((xs.size, 2))
-        kernels.slopes(self.rows, xs.ravel(), ys.ravel(), float(time), out)
+        kernels.slopes(self._rows, xs.ravel(), ys.ravel(), float(time), out)
         return out.reshape(*xs.shape, 2)
 
     def depth(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Depth (...) [m] of points (..., 3) [m] under the surface at a time [s].
 
         It is positive in the water.
+
+        Raises:
+            WaterError: points of another shape; so in the methods below.
         """
-        p = np.asarray(points, float)
+        p = _read_points(points)
         depths: NDArray[np.float64] = self.elevation(p[..., 0], p[..., 1], time) - p[..., 2]
         return depths
 
@@ -151,10 +167,10 @@ class Water:
 
         It is the sum of the current and of the orbital velocities of linear waves.
         """
-        p = np.asarray(points, float)
+        p = _read_points(points)
         out = np.empty((p.size // 3, 3))
         kernels.velocities(
-            self.rows, self.current_rows, p.reshape(-1, 3), self.level, float(time), out
+            self._rows, self._current_rows, p.reshape(-1, 3), self.level, float(time), out
         )
         return out.reshape(p.shape)
 
@@ -163,10 +179,10 @@ class Water:
 
         It is the rate of `velocity` at fixed places, without the convective part.
         """
-        p = np.asarray(points, float)
+        p = _read_points(points)
         out = np.empty((p.size // 3, 3))
         kernels.accelerations(
-            self.rows, self.current_rows, p.reshape(-1, 3), self.level, float(time), out
+            self._rows, self._current_rows, p.reshape(-1, 3), self.level, float(time), out
         )
         return out.reshape(p.shape)
 
@@ -183,7 +199,32 @@ class Water:
             time: [s].
             gravity: acceleration of gravity [m/s^2].
         """
-        p = np.asarray(points, float)
+        p = _read_points(points)
         out = np.empty(p.size // 3)
-        kernels.heads(self.rows, p.reshape(-1, 3), self.level, float(time), out)
+        kernels.heads(self._rows, p.reshape(-1, 3), self.level, float(time), out)
         return self.density * gravity * out.reshape(p.shape[:-1])
+
+
+def _rows_of(wave: Wave) -> NDArray[np.float64]:
+    """The rows (n, 6) of a wave, which may be of a class of somebody's own."""
+    rows = wave.rows
+    name = f"rows of {describe(wave)}"
+    array = read_array(WaterError, name, rows, (ANY, 6), finite=False)
+    # the depth may be infinite
+    read_array(WaterError, name, array[:, :5], (ANY, 5))
+    if not (array[:, 5] > 0.0).all():
+        raise WaterError(f"{name} hold a depth of {array[:, 5].min():g}; it must be above 0")
+    return array
+
+
+def _read_points(points: ArrayLike) -> NDArray[np.float64]:
+    """Points (..., 3) as floats; nan stays nan, as of a hull that is dry."""
+    shape = (*[ANY] * (np.ndim(points) - 1), 3)
+    return read_array(WaterError, "points", points, shape, finite=False)
+
+
+def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same numbers, which cannot be changed for all who share them."""
+    view = array.view()
+    view.setflags(write=False)
+    return view

@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from buoyancy_mj.errors import WaterError
-from buoyancy_mj.sea.ranges import LARGEST, SMALLEST, check_depth, check_number
+from buoyancy_mj.sea.ranges import LARGEST, SHORTEST, SMALLEST, STRONGEST, read_depth
+from buoyancy_mj.values import read_number, set_number
 
 GRAVITY = 9.81
 """Default acceleration of gravity [m/s^2], the same as MuJoCo's."""
@@ -17,6 +18,8 @@ STEEPEST = 0.142
 """Height over wavelength above which regular waves break in deep water (Miche 1944).
 
 In water of depth h the limit is this times tanh(k h)."""
+FASTEST = 100.0
+"""Greatest frequency of a level that goes up and down [Hz]; timesteps resolve no more."""
 
 
 class Wave(Protocol):
@@ -41,7 +44,8 @@ class RegularWave:
     are steeper than `STEEPEST`; this one does not, but `warning` says so.
 
     Raises:
-        WaterError: none or several of the three, or a value out of its range.
+        WaterError: none or several of the three, a value out of its range, a wave shorter than
+            `ranges.SHORTEST`, or one that is higher than long.
 
     Example:
         >>> RegularWave(0.3, period=4.0).wavelength
@@ -67,18 +71,18 @@ class RegularWave:
 
     def __post_init__(self) -> None:
         # values in their ranges
-        check_number("amplitude", self.amplitude, least=0.0)
-        check_number("direction", self.direction)
-        check_number("phase", self.phase)
-        check_number("gravity", self.gravity, above=0.0)
-        check_depth(self.depth)
+        set_number(self, WaterError, "amplitude", least=0.0, most=LARGEST)
+        set_number(self, WaterError, "direction")
+        set_number(self, WaterError, "phase")
+        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
+        object.__setattr__(self, "depth", read_depth(self.depth))
         if self.amplitude > self.depth:
             raise WaterError(
                 f"amplitude is {self.amplitude} m in water {self.depth} m deep; "
                 "the trough would lie below the bottom"
             )
 
-        # one of three
+        # one of three; the other two follow
         three = {name: getattr(self, name) for name in ("frequency", "period", "wavelength")}
         known = {name: value for name, value in three.items() if not _is_default(value)}
         if len(known) != 1:
@@ -87,18 +91,13 @@ class RegularWave:
                 "give exactly one of frequency [Hz], period [s], wavelength [m]"
             )
         ((name, value),) = known.items()
-        check_number(name, value, least=SMALLEST, most=LARGEST)
-
-        # the other two follow
-        self._complete(name, value)
-        if not SMALLEST**2 <= self.wavelength <= LARGEST**3:
-            raise WaterError(
-                f"a wave with a {name} of {value} would be {self.wavelength:.3g} m long; "
-                f"give another {name}"
-            )
+        number = read_number(WaterError, name, value, least=SMALLEST, most=LARGEST)
+        self._complete(name, number)
+        self._check_length(name, number)
 
     def _complete(self, name: str, value: float) -> None:
         """Set the two of frequency, period and wavelength that follow from the third."""
+        object.__setattr__(self, name, value)
         if name == "wavelength":
             k = 2.0 * math.pi / value
             frequency = math.sqrt(self.gravity * k * math.tanh(k * self.depth)) / (2.0 * math.pi)
@@ -110,6 +109,20 @@ class RegularWave:
         if name != "wavelength":
             k = wavenumber(2.0 * math.pi * frequency, self.depth, self.gravity)
             object.__setattr__(self, "wavelength", 2.0 * math.pi / k)
+
+    def _check_length(self, name: str, value: float) -> None:
+        """Refuse a length that no wave has, and a wave that is higher than long."""
+        if not SHORTEST <= self.wavelength <= LARGEST**3:
+            raise WaterError(
+                f"a wave with a {name} of {value:g} would be {self.wavelength:.3g} m long; waves "
+                f"that gravity makes are at least {SHORTEST} m long"
+            )
+        height = 2.0 * self.amplitude
+        if height > self.wavelength:
+            raise WaterError(
+                f"a wave {height:.3g} m high and {self.wavelength:.3g} m long is higher than long; "
+                f"it would break at {STEEPEST * self.wavelength:.3g} m: make it lower or longer"
+            )
 
     @property
     def rows(self) -> NDArray[np.float64]:
@@ -155,9 +168,9 @@ class LevelOscillation:
     """Phase at time 0 [rad]; 0 starts at the highest level, pi/2 at the mean one, going up."""
 
     def __post_init__(self) -> None:
-        check_number("amplitude", self.amplitude, least=0.0)
-        check_number("frequency", self.frequency, least=SMALLEST, most=LARGEST)
-        check_number("phase", self.phase)
+        set_number(self, WaterError, "amplitude", least=0.0, most=LARGEST)
+        set_number(self, WaterError, "frequency", least=SMALLEST, most=FASTEST)
+        set_number(self, WaterError, "phase")
 
     @property
     def rows(self) -> NDArray[np.float64]:

@@ -6,8 +6,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from buoyancy_mj.errors import BuoyancyError, MethodError, ModelError, WaterError
-from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.errors import BuoyancyError, MethodError, ModelError, WaterError, describe
+from buoyancy_mj.hulls.selection import Selection, join_words, split_words
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.sea.currents import Current
 from buoyancy_mj.sea.water import Water
@@ -29,7 +29,10 @@ WATER = tuple(field.name for field in dataclasses.fields(Water))
 SELECTION = tuple(field.name for field in dataclasses.fields(Selection))
 """Keys that choose geoms: the fields of `Selection`."""
 KEYS = (*WATER, "method", "pressure", "damping", "added_mass", *SELECTION)
-"""All keys of the plugin."""
+"""All keys of the plugin that hold settings."""
+INSTANCE = "instance"
+"""Key that holds the name of the instance where `add_water` put it. If the model has another name
+for it, the instance was attached under a prefix, and is the water of what came with it."""
 _LENGTHS = ("frequency", "period", "wavelength")
 """Fields of a regular wave of which any one gives the others."""
 
@@ -54,7 +57,9 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
     words = {key: text.strip() for key, text in texts.items() if text.strip()}
     method = parse_table(words.get("method", "exact"), f"{where}: method")
     damping = _parse_damping(words.get("damping", "true"), f"{where}: damping")
-    selection = {key: words[key].replace(",", " ").split() for key in SELECTION if key in words}
+    selection = {
+        key: split_words(words[key], f"{where}: {key}") for key in SELECTION if key in words
+    }
     return Settings(
         water=water_from_table(_parse_water(words, where), where),
         method=method_from_table(method, f"{where}: method"),
@@ -80,7 +85,9 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         )
     water = settings.water
     if type(water) is not Water:
-        raise WaterError(f"{water!r} cannot be written into a model; possible is a Water itself")
+        raise WaterError(
+            f"{describe(water)} cannot be written into a model; possible is a Water itself"
+        )
     waves = cast(tuple[Wave, ...], water.waves)
     texts = {
         "density": format_value(float(water.density)),
@@ -91,18 +98,32 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         "pressure": settings.pressure,
         "damping": _format_damping(settings.damping),
         "added_mass": settings.added_mass or "none",
-        **{key: " ".join(getattr(settings.selection, key) or ()) for key in SELECTION},
+        **{key: join_words(getattr(settings.selection, key) or ()) for key in SELECTION},
     }
     return {key: text for key, text in texts.items() if text}
 
 
+def has_texts(settings: Settings) -> bool:
+    """Whether settings can be written as texts: all but those of somebody's own classes can."""
+    try:
+        write_plugin_config(settings)
+    except BuoyancyError:
+        return False
+    return True
+
+
 def _parse_water(words: Mapping[str, str], where: str) -> dict[str, Any]:
     """The table of a sea."""
-    table = {key: parse_value(words[key]) for key in ("density", "level") if key in words}
+    table = {
+        key: parse_value(words[key], f"{where}: {key}")
+        for key in ("density", "level")
+        if key in words
+    }
     if "current" in words:
         text = words["current"]
-        speeds = [parse_value(word) for word in text.replace(",", " ").split()]
-        table["current"] = parse_table(text, f"{where}: current") if "=" in text else speeds
+        place = f"{where}: current"
+        speeds = [parse_value(word, place) for word in text.replace(",", " ").split()]
+        table["current"] = parse_table(text, place) if "=" in text else speeds
     if "waves" in words:
         waves = [wave for wave in words["waves"].split(";") if wave.strip()]
         table["waves"] = [parse_table(wave, f"{where}: waves") for wave in waves]
@@ -111,7 +132,7 @@ def _parse_water(words: Mapping[str, str], where: str) -> dict[str, Any]:
 
 def _parse_damping(text: str, where: str) -> Any:
     """The table of damping, or its kind, or whether there is any."""
-    return parse_table(text, where) if "=" in text else parse_value(text)
+    return parse_table(text, where) if "=" in text else parse_value(text, where)
 
 
 def _format_wave(wave: Wave) -> str:
@@ -119,7 +140,7 @@ def _format_wave(wave: Wave) -> str:
     kinds = [kind for kind, cls in WAVES.items() if type(wave) is cls]
     if not kinds:
         raise WaterError(
-            f"{wave!r} cannot be written into a model; possible are {', '.join(WAVES)}"
+            f"{describe(wave)} cannot be written into a model; possible are {', '.join(WAVES)}"
         )
     leave_out = _redundant_lengths(wave) if isinstance(wave, RegularWave) else ()
     return format_table(kinds[0], wave, leave_out=leave_out)
@@ -146,7 +167,7 @@ def _format_current(current: Current) -> str:
             return format_table(kind, current)
     if not isinstance(current, tuple):
         raise WaterError(
-            f"{current!r} cannot be written into a model; possible are three numbers, "
+            f"{describe(current)} cannot be written into a model; possible are three numbers, "
             f"{', '.join(CURRENTS)}"
         )
     return " ".join(format_value(float(speed)) for speed in current)
@@ -156,7 +177,7 @@ def _format_method(method: Method) -> str:
     """A method as text."""
     if type(method) not in METHODS.values():
         raise MethodError(
-            f"{method!r} cannot be written into a model; possible are {', '.join(METHODS)}"
+            f"{describe(method)} cannot be written into a model; possible are {', '.join(METHODS)}"
         )
     return format_table(method.name, method)
 

@@ -6,8 +6,9 @@ from typing import Any, TypedDict
 
 from numpy.typing import ArrayLike
 
-from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices
+from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.loads.added_mass import check_source
 from buoyancy_mj.loads.damping import Damping, Panels
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
@@ -25,7 +26,7 @@ class Settings:
     of the water. A scene has them beside its vehicle, and the plugin keeps them as texts.
 
     Raises:
-        WaterError, ModelError: a water, a damping or a selection of another kind.
+        WaterError, ModelError: a water, a damping, an added mass or a selection of another kind.
         MethodError: an unknown method or pressure; or a pressure, or damping, that needs another
             method.
 
@@ -55,23 +56,26 @@ class Settings:
     def __post_init__(self) -> None:
         # kinds of values
         if not isinstance(self.water, Water):
-            raise WaterError(f"water is {self.water!r}; it must be a Water, as Water(waves=...)")
+            raise WaterError(
+                f"water is {describe(self.water)}; it must be a Water, as Water(waves=...)"
+            )
         if not isinstance(self.damping, Damping | None):
             raise ModelError(
-                f"damping is {self.damping!r}; "
+                f"damping is {describe(self.damping)}; "
                 "it must be Damping(viscous=..., radiation=...) or None"
             )
         if not isinstance(self.selection, Selection):
             raise ModelError(
-                f"selection is {self.selection!r}; "
+                f"selection is {describe(self.selection)}; "
                 "it must be Selection(geoms=..., hull=..., fill=...)"
             )
+        check_source(self.added_mass)
 
         # names
         object.__setattr__(self, "method", parse_method(self.method))
         if self.pressure not in PRESSURES:
             raise MethodError(
-                f"pressure is '{self.pressure}'; {choices(str(self.pressure), PRESSURES)}"
+                f"pressure is {describe(self.pressure)}; {choices(self.pressure, PRESSURES)}"
             )
 
         # the other methods know neither pressure nor triangles

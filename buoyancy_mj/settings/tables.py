@@ -7,7 +7,8 @@ import typing
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeVar
 
-from buoyancy_mj.errors import BuoyancyError, SceneError, choices
+from buoyancy_mj.errors import BuoyancyError, SceneError, SceneTypeError, choices, describe
+from buoyancy_mj.values import is_number, read_text
 
 T = TypeVar("T")
 
@@ -18,6 +19,8 @@ _PLAIN_TYPES = {
     str: "a text in quotes",
 }
 """Types that TOML has too, in words."""
+_PLURALS = {str: "words", float: "numbers"}
+"""Types of which TOML has lists, in words."""
 
 
 def build(cls: type[T], table: Mapping[str, Any], where: str, **values: Any) -> T:
@@ -30,8 +33,8 @@ def build(cls: type[T], table: Mapping[str, Any], where: str, **values: Any) -> 
         values: fields that the caller sets, which are no keys of the table.
 
     Raises:
-        SceneError: a key that `cls` lacks, a value of the wrong type, a missing one, or one that
-            `cls` itself refuses.
+        SceneTypeError: a key that `cls` lacks, or a value of the wrong type.
+        SceneError: a missing value, or one that `cls` itself refuses.
     """
     hints = typing.get_type_hints(cls)
     fields = {field.name: field for field in dataclasses.fields(cls) if field.name not in values}  # type: ignore[arg-type]
@@ -39,7 +42,7 @@ def build(cls: type[T], table: Mapping[str, Any], where: str, **values: Any) -> 
     # the keys
     for key in table:
         if key not in fields:
-            raise SceneError(f"{where}: unknown key '{key}'; {choices(key, fields)}")
+            raise SceneTypeError(f"{where}: unknown key {describe(key)}; {choices(key, fields)}")
     for name, field in fields.items():
         if name not in table and not _has_default(field):
             raise SceneError(f"{where}: '{name}' is missing; needed is {_describe(hints[name])}")
@@ -62,25 +65,40 @@ def convert(value: Any, hint: Any, where: str) -> Any:
         where: how messages call the value.
 
     Raises:
-        SceneError: the value is of another type, or nan.
+        SceneTypeError: the value is of another type.
+        SceneError: it is nan, beyond what a float holds, or a text of several lines.
     """
     kind = _first_type(hint)
-    is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if kind is float and is_number:
-        if math.isnan(value):
-            raise SceneError(f"{where} is nan; needed is a number")
-        return float(value)
-    if kind is int and is_number and isinstance(value, int):
+    if kind in (float, int) and is_number(value):
+        return _convert_number(value, kind, where)
+    if kind is bool and isinstance(value, bool):
         return value
-    if kind in (bool, str) and isinstance(value, kind):
-        return value
+    if kind is str and isinstance(value, str):
+        return read_text(SceneError, where, value)
     if typing.get_origin(kind) is tuple and isinstance(value, list | tuple):
         items = typing.get_args(kind)
         if items[-1] is Ellipsis:
             items = (items[0],) * len(value)
         if len(items) == len(value):
             return _convert_items(value, items, where)
-    raise SceneError(f"{where} is {value!r}; needed is {_describe(kind)}")
+    raise SceneTypeError(f"{where} is {describe(value)}; needed is {_describe(kind)}")
+
+
+def _convert_number(value: float, kind: type, where: str) -> float:
+    """A number as a float or an int; a whole number may be written with a point."""
+    try:
+        number = float(value)
+    except OverflowError:
+        raise SceneError(
+            f"{where} is {describe(value)}; needed is {_describe(kind)} below 1.8e308"
+        ) from None
+    if math.isnan(number):
+        raise SceneError(f"{where} is nan; needed is {_describe(kind)}")
+    if kind is float:
+        return number
+    if not number.is_integer():
+        raise SceneTypeError(f"{where} is {describe(value)}; needed is {_describe(kind)}")
+    return int(value)
 
 
 def _convert_items(values: Sequence[Any], hints: Sequence[Any], where: str) -> tuple[Any, ...]:
@@ -105,5 +123,8 @@ def _describe(hint: Any) -> str:
     kind = _first_type(hint)
     if typing.get_origin(kind) is tuple:
         items = typing.get_args(kind)
-        return "a list of words" if items[-1] is Ellipsis else f"a list of {len(items)} numbers"
+        if items[-1] is not Ellipsis:
+            return f"a list of {len(items)} numbers"
+        plural = _PLURALS.get(items[0], f"lists of {len(typing.get_args(items[0]))} numbers")
+        return f"a list of {plural}"
     return _PLAIN_TYPES.get(kind, f"a table ({getattr(kind, '__name__', kind)})")

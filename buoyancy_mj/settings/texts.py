@@ -6,15 +6,47 @@ import tomllib
 from collections.abc import Sequence
 from typing import Any
 
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import SceneError, describe
+from buoyancy_mj.values import read_text
 
 
-def parse_value(text: str) -> Any:
-    """A value of TOML, or the text itself as a bare word."""
+def parse_toml(text: str, where: str) -> dict[str, Any]:
+    """The table that a text of TOML describes.
+
+    Args:
+        text: the text.
+        where: how messages call it.
+
+    Raises:
+        SceneError: it is no TOML, or more than Python reads of it.
+    """
     try:
-        return tomllib.loads(f"value = {text}")["value"]
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise SceneError(f"{where} is no valid TOML: {error}") from error
+    except (ValueError, RecursionError) as error:
+        raise SceneError(
+            f"{where} cannot be read: {_explain(error)}, near {_find_cause(text, error)}"
+        ) from error
+
+
+def parse_value(text: str, where: str) -> Any:
+    """A value of TOML, or the text itself as a bare word.
+
+    Args:
+        text: the text, on one line.
+        where: how messages call it.
+
+    Raises:
+        SceneError: it is more than one line, or more than Python reads.
+    """
+    line = read_text(SceneError, where, text)
+    try:
+        return tomllib.loads(f"value = {line}")["value"]
     except tomllib.TOMLDecodeError:
-        return text.strip()
+        return line.strip()
+    except (ValueError, RecursionError) as error:
+        raise SceneError(f"{where} is {describe(text)}: {_explain(error)}") from error
 
 
 def format_value(value: bool | str | float | tuple[Any, ...]) -> str:
@@ -45,10 +77,12 @@ def parse_table(text: str, where: str) -> dict[str, Any]:
         key, equals, value = word.partition("=")
         if not equals:
             raise SceneError(
-                f"{where} is '{text.strip()}'; after the kind it must be key=value pairs "
-                f"between blanks, not '{word}'"
+                f"{where} is {describe(text.strip())}; after the kind it must be key=value pairs "
+                f"between blanks, not {describe(word)}"
             )
-        table[key] = parse_value(value)
+        if key in table:
+            raise SceneError(f"{where} is {describe(text.strip())}; it gives '{key}' twice")
+        table[key] = parse_value(value, f"{where}: {key}")
     return table
 
 
@@ -69,3 +103,19 @@ def format_table(
         if field.name not in leave_out and (defaults or item != field.default):
             words.append(f"{field.name}={format_value(item)}")
     return " ".join(words)
+
+
+def _find_cause(text: str, error: Exception) -> str:
+    """The line of a text that Python can most likely not read, and how it begins."""
+    suspects = "[{" if isinstance(error, RecursionError) else "0123456789"
+    lines = text.split("\n")
+    weights = [sum(line.count(suspect) for suspect in suspects) for line in lines]
+    number = weights.index(max(weights))
+    return f"line {number + 1}, which begins {describe(lines[number][:30])}"
+
+
+def _explain(error: Exception) -> str:
+    """What Python cannot read, in words."""
+    if isinstance(error, RecursionError):
+        return "its lists or tables lie too deep in one another"
+    return "a number in it has too many digits"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from buoyancy_mj.errors import SceneError, WaterError, choices
+from buoyancy_mj.errors import SceneError, SceneTypeError, WaterError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.sea.currents import CurrentProfile, CurrentSeries
@@ -46,7 +46,9 @@ def water_from_table(value: Any, where: str, folder: Path = Path()) -> Water:
     table = dict(table_of(value, where))
     waves = table.pop("waves", [])
     if not isinstance(waves, list):
-        raise SceneError(f"{where}: waves is {waves!r}; needed is a list of tables [[water.waves]]")
+        raise SceneTypeError(
+            f"{where}: waves is {describe(waves)}; needed is a list of tables [[water.waves]]"
+        )
     fields: dict[str, Any] = {
         "waves": tuple(wave_from_table(wave, f"{where}.waves.{i}") for i, wave in enumerate(waves))
     }
@@ -68,8 +70,8 @@ def current_from_table(
     table = dict(value)
     kind = table.pop("kind", None)
     if not isinstance(kind, str) or kind not in CURRENTS:
-        raise SceneError(
-            f"{where}: kind is {kind!r}; {choices(str(kind), CURRENTS)}, "
+        raise SceneTypeError(
+            f"{where}: kind is {describe(kind)}; {choices(kind, CURRENTS)}, "
             "or a list of 3 numbers instead"
         )
     if kind == "series" and "file" in table:
@@ -79,7 +81,7 @@ def current_from_table(
                 f"{where}: a series has a file, a text, and nothing else, or times and velocities"
             )
         try:
-            return CurrentSeries.read(folder / file)
+            return CurrentSeries.read(folder / convert(file, str, f"{where}: file"))
         except WaterError as error:
             raise SceneError(f"{where}: {error}") from error
     return build(CURRENTS[kind], table, where)
@@ -94,21 +96,29 @@ def method_from_table(value: Any, where: str) -> Method:
 
 
 def damping_from_table(value: Any, where: str) -> Damping | None:
-    """Damping from the kind of viscous drag, or a table of `kind`, its options and `radiation`."""
+    """Damping from the kind of viscous drag, or a table of `kind`, its options and `radiation`.
+
+    'none' alone is no damping at all, as false is, and as None is in Python; beside it,
+    radiation = true keeps the damping of the waves that bodies make.
+    """
     if isinstance(value, bool):
         return Damping() if value else None
     if not isinstance(value, str | dict):
-        raise SceneError(
-            f"{where} is {value!r}; needed is true, false, one of {', '.join(VISCOUS)}, or a table"
+        raise SceneTypeError(
+            f"{where} is {describe(value)}; needed is true, false, one of {', '.join(VISCOUS)}, "
+            "or a table"
         )
     table = {"kind": value} if isinstance(value, str) else dict(table_of(value, where))
     viscous = _find_kind(table.pop("kind", "silhouette"), VISCOUS, where)
+    if viscous is None and not table:
+        return None
     radiation = convert(table.pop("radiation", True), bool, f"{where}: radiation")
     options = [field.name for field in dataclasses.fields(viscous)] if viscous else []
     for key in table:
         if key not in options:
-            raise SceneError(
-                f"{where}: unknown key '{key}'; {choices(key, ('kind', 'radiation', *options))}, "
+            raise SceneTypeError(
+                f"{where}: unknown key {describe(key)}; "
+                f"{choices(key, ('kind', 'radiation', *options))}, "
                 f"where kind is one of {', '.join(VISCOUS)}"
             )
     return Damping(
@@ -118,20 +128,27 @@ def damping_from_table(value: Any, where: str) -> Damping | None:
 
 def selection_from_table(table: Mapping[str, Any], where: str) -> Selection:
     """The selection of the lists `geoms`, `hull` and `fill` of a table."""
-    return Selection(
-        **{key: convert(value, tuple[str, ...], f"{where}: {key}") for key, value in table.items()}
-    )
+    words = {
+        key: convert(value, tuple[str, ...], f"{where}: {key}") for key, value in table.items()
+    }
+    for key, chosen in words.items():
+        if not " ".join(chosen).strip():
+            raise SceneError(
+                f"{where}: {key} is {describe(table[key])}, which chooses nothing; give patterns "
+                f"such as 'hull*' or 'group:2', or leave {key} out"
+            )
+    return Selection(**words)
 
 
 def table_of(value: Any, where: str) -> Mapping[str, Any]:
     """A table, or an error that says it should be one."""
     if not isinstance(value, dict):
-        raise SceneError(f"{where} is {value!r}; needed is a table")
+        raise SceneTypeError(f"{where} is {describe(value)}; needed is a table")
     return value
 
 
 def _find_kind(kind: Any, kinds: Mapping[str, K], where: str) -> K:
     """The class of a kind."""
     if not isinstance(kind, str) or kind not in kinds:
-        raise SceneError(f"{where}: unknown kind {kind!r}; {choices(str(kind), kinds)}")
+        raise SceneTypeError(f"{where}: unknown kind {describe(kind)}; {choices(kind, kinds)}")
     return kinds[kind]

@@ -11,6 +11,9 @@ from buoyancy_mj.meshes.surface import winding_number
 from buoyancy_mj.statics.floating_pose import FloatingPose
 from buoyancy_mj.statics.vessel import Vessel
 
+FARTHEST = 1e6
+"""Greatest distance of ballast from the origin of its body [m]."""
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class BallastSite:
@@ -57,10 +60,11 @@ def find_ballast_sites(
 
     # the corners of a box displace as its middle does
     box = np.asarray(where, float)
-    if box.shape != (2, 3) or not np.isfinite(box).all() or (box[0] > box[1]).any():
+    is_box = box.shape == (2, 3) and (np.abs(box) <= FARTHEST).all()
+    if not is_box or (box[0] > box[1]).any():
         raise ModelError(
             f"a box for {kind} is {box.tolist()}; "
-            "it must be its lowest and highest corner (2, 3) [m]"
+            f"it must be its lowest and highest corner (2, 3) [m], within {FARTHEST:g} m"
         )
     middle = box.mean(axis=0) - vessel.centre_of_gravity
     corners = np.array(np.meshgrid(*box.T)).reshape(3, -1).T - vessel.centre_of_gravity

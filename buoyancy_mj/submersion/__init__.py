@@ -2,5 +2,5 @@
 
 In: meshes, their poses and a sea.
 Out: submerged volume, its centroid, wetted area and waterplane area.
-May import: meshes, sea, kernels, errors.
+May import: meshes, sea, kernels, values, errors.
 """

@@ -15,11 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from trimesh.geometry import faces_to_edges
 
-from buoyancy_mj.errors import MethodError, choices
+from buoyancy_mj.errors import MethodError, choices, describe
 from buoyancy_mj.kernels import clip, slices
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.hull_set import HullSet, submerge_each
 from buoyancy_mj.submersion.quickhull import hull_moments
+from buoyancy_mj.values import read_truth, read_whole_number
 
 CENTROIDS = ("vertices", "hull")
 """Kinds of centre of buoyancy: the mean of the hull's vertices, or its true centroid."""
@@ -58,19 +59,17 @@ class ConvexHull:
     def __post_init__(self) -> None:
         if self.centroid not in CENTROIDS:
             raise MethodError(
-                f"centroid is {self.centroid!r}; {choices(str(self.centroid), CENTROIDS)}"
+                f"centroid is {describe(self.centroid)}; {choices(self.centroid, CENTROIDS)}"
             )
-        if not isinstance(self.cut, bool):
-            raise MethodError(f"cut is {self.cut!r}; it must be True or False")
-        if (
-            isinstance(self.resort_every, bool)
-            or not isinstance(self.resort_every, int | np.integer)
-            or self.resort_every < 0
-        ):
+        object.__setattr__(self, "cut", read_truth(MethodError, "cut", self.cut))
+        try:
+            steps = read_whole_number(MethodError, "", self.resort_every, 0, 2**31)
+        except MethodError:
             raise MethodError(
-                f"resort_every is {self.resort_every!r}; "
+                f"resort_every is {describe(self.resort_every)}; "
                 "it must be a number of steps, or 0 for no sorting"
-            )
+            ) from None
+        object.__setattr__(self, "resort_every", steps)
 
     def pack(self, hulls: HullSet, water: Water) -> "PackedConvexHulls":
         """Prepare hulls: drop unused vertices, list the edges."""
@@ -114,6 +113,8 @@ class PackedConvexHulls:
         self.method = method
         self.hulls = hulls
         self.water = water
+        # kernels are compiled for arrays that can be written to
+        self._waves = water.rows.copy()
         self.volumes = hulls.volumes
         """Volume that each hull displaces when it is under water (h,) [m^3]."""
         self.results = np.zeros((len(hulls.meshes), clip.COLUMNS))
@@ -244,7 +245,7 @@ class PackedConvexHulls:
             origin,
             rotation,
             self.water.level,
-            self.water.rows,
+            self._waves,
             time,
             self._points,
         )

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
 from weakref import WeakKeyDictionary
@@ -9,8 +10,8 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.errors import MethodError
-from buoyancy_mj.kernels import clip, local, pressure, tree, waterplane
+from buoyancy_mj.errors import BuoyancyWarning, MethodError, WaterError, describe
+from buoyancy_mj.kernels import clip, local, pressure, swell, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
@@ -21,9 +22,16 @@ from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.tree import Tree, build_tree
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.hull_set import HullSet
+from buoyancy_mj.values import set_number
 
 MOST_TRIANGLES = 200_000
 """Most triangles to which a mesh is refined for the waves."""
+FINEST = 1e-8
+"""Least tolerance; sums over that many triangles round off about so much."""
+MOST_TURNS = swell.PANEL * swell.PANELS
+"""Greatest change of a wave's phase from the middle of a hull to its corner [rad].
+
+Shorter waves are not resolved, see `kernels.swell.PANELS`."""
 _TREES: WeakKeyDictionary[TriMesh, dict[float, Tree]] = WeakKeyDictionary()
 
 
@@ -32,7 +40,7 @@ class Exact:
     """The volume and centroid under the surface, exact on the mesh: the default everywhere.
 
     Raises:
-        MethodError: a tolerance that is not positive.
+        MethodError: a tolerance that is not between `FINEST` and 1.
     """
 
     name: ClassVar[str] = "exact"
@@ -44,18 +52,20 @@ class Exact:
     is of second order, a hundredth of that and less, and on still water there is none."""
 
     def __post_init__(self) -> None:
-        if (
-            isinstance(self.tolerance, bool)
-            or not isinstance(self.tolerance, int | float)
-            or not 0.0 < self.tolerance <= 1.0
-        ):
+        try:
+            set_number(self, MethodError, "tolerance", least=FINEST, most=1.0)
+        except MethodError:
             raise MethodError(
-                f"tolerance is {self.tolerance!r}; "
-                "it must be a part of the volume, above 0 and at most 1"
-            )
+                f"tolerance is {describe(self.tolerance)}; "
+                f"it must be a part of the volume, at least {FINEST:g} and at most 1"
+            ) from None
 
     def pack(self, hulls: HullSet, water: Water) -> "PackedHulls":
-        """Prepare hulls: refine their meshes for the waves, build their trees."""
+        """Prepare hulls: refine their meshes for the waves, build their trees.
+
+        Raises:
+            WaterError: waves that are too short for so long a hull.
+        """
         return PackedHulls(hulls, water, self.tolerance)
 
 
@@ -73,13 +83,17 @@ class PackedHulls:
             hulls: the hulls; errors in waves are compared with the joint volume of a body's hulls.
             water: the sea.
             tolerance: see `Exact.tolerance`.
+
+        Raises:
+            WaterError: waves that are too short for so long a hull.
         """
+        _check_wavelengths(hulls.meshes, water)
         meshes, fills = hulls.meshes, hulls.fills
         edges = _longest_edges(meshes, hulls.bodies, water, tolerance)
         trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
-        self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, water))
-        """The hulls as kernels read them."""
         self._sea = sea_arrays(water)
+        self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, self._sea.waves))
+        """The hulls as kernels read them."""
         spans = self.hulls.spans
         leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
         vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
@@ -170,9 +184,9 @@ def _hulls(
     trees: Sequence[Tree],
     fills: NDArray[np.float64],
     frames: NDArray[np.int64],
-    water: Water,
+    waves: NDArray[np.float64],
 ) -> Hulls:
-    """Meshes and their trees, joined; see `PackedHulls` for the arguments."""
+    """Meshes and their trees, joined, for waves (w, 6); see `PackedHulls` for the arguments."""
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
     first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
     first_node = np.cumsum([0, *(len(t.spans) for t in trees)])
@@ -199,16 +213,16 @@ def _hulls(
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
-        np.array([_whole(mesh, fill, water) for mesh, fill in zip(meshes, fills, strict=True)]),
-        pressure.typical(water.rows),
+        np.array([_whole(mesh, fill, waves) for mesh, fill in zip(meshes, fills, strict=True)]),
+        pressure.typical(waves),
         frames,
     )
 
 
-def _whole(mesh: TriMesh, fill: float, water: Water) -> list[float]:
+def _whole(mesh: TriMesh, fill: float, waves: NDArray[np.float64]) -> list[float]:
     """One row of `Hulls.whole`."""
     half = 0.5 * mesh.extents
-    plan = local.plan(water.rows, float(np.linalg.norm(half)))
+    plan = local.plan(waves, float(np.linalg.norm(half)))
     middle = mesh.bounds.mean(axis=0)
     return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, *plan]
 
@@ -242,14 +256,45 @@ def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> 
     return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
 
 
+def _check_wavelengths(meshes: Sequence[TriMesh], water: Water) -> None:
+    """Refuse waves so short that no pass over the hulls could resolve them.
+
+    Raises:
+        WaterError: the shortest wave is shorter than 2 pi / `MOST_TURNS` of half a hull's diagonal.
+    """
+    amplitudes, kx, ky = np.abs(water.rows[:, :3].T)
+    steepest = float(np.hypot(kx, ky)[amplitudes > 0.0].max(initial=0.0))
+    radius = max(0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes)
+    if steepest * radius > MOST_TURNS:
+        raise WaterError(
+            f"the water has waves {2.0 * math.pi / steepest:.3g} m long, too short for a hull "
+            f"{2.0 * radius:.3g} m from corner to corner, over which waves must be at least "
+            f"{2.0 * math.pi * radius / MOST_TURNS:.3g} m long; leave out shorter ones (a sea of "
+            "fewer components has longer ones)"
+        )
+
+
 def _longest_edges(
     meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water, tolerance: float
 ) -> list[float]:
     """`longest_edge` of each mesh, from the volume and the area of all meshes of its body."""
     volumes = np.array([mesh.volume for mesh in meshes])
     areas = np.array([mesh.area for mesh in meshes])
-    together = [bodies == body for body in bodies]
-    return [
-        longest_edge(volumes[which].sum(), areas[which].sum(), water, tolerance)
-        for which in together
-    ]
+    edges, worst = [], tolerance
+    for body in bodies:
+        volume, area = volumes[bodies == body].sum(), areas[bodies == body].sum()
+        edge = longest_edge(volume, area, water, tolerance)
+        edges.append(edge)
+        if math.isfinite(edge):
+            worst = max(worst, edge**2 * area * water.curvature / (24.0 * volume))
+
+    # where the triangles would be too many
+    if worst > 1.001 * tolerance:
+        warnings.warn(
+            f"the waves are so steep and short that {MOST_TRIANGLES:,} triangles keep the volume "
+            f"of a hull to {worst:.2g} of it at worst, not to the tolerance {tolerance:g}; make "
+            "the waves longer or lower",
+            BuoyancyWarning,
+            stacklevel=5,
+        )
+    return edges

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.errors import MethodError, choices
+from buoyancy_mj.errors import MethodError, choices, describe
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.convex_hull import ConvexHull
 from buoyancy_mj.submersion.exact import Exact
@@ -88,11 +88,11 @@ def parse_method(method: str | Method) -> Method:
     """
     if isinstance(method, str):
         if method not in METHODS:
-            raise MethodError(f"unknown method '{method}'; {choices(method, METHODS)}")
+            raise MethodError(f"unknown method {describe(method)}; {choices(method, METHODS)}")
         return METHODS[method]()
     if isinstance(method, type) or not hasattr(method, "pack"):
         raise MethodError(
-            f"{method!r} is no method; possible are {', '.join(METHODS)}, "
+            f"{describe(method)} is no method; possible are {', '.join(METHODS)}, "
             "or one of them with options"
         )
     return method

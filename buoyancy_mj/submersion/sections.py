@@ -14,11 +14,12 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.errors import MethodError, choices
+from buoyancy_mj.errors import MethodError, choices, describe
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.cross_sections import complete_axes, cut_sections, integrate
 from buoyancy_mj.submersion.hull_set import HullSet, submerge_each
+from buoyancy_mj.values import read_array, set_number
 
 RULES = ("trapezoid", "simpson")
 """Rules of integration."""
@@ -53,15 +54,11 @@ class Sections:
 
     def __post_init__(self) -> None:
         if self.rule not in RULES:
-            raise MethodError(f"rule is {self.rule!r}; {choices(str(self.rule), RULES)}")
-        if self.step is not None and not (_is_finite(self.step) and self.step > 0.0):
-            raise MethodError(f"step is {self.step!r}; it must be a positive length [m]")
+            raise MethodError(f"rule is {describe(self.rule)}; {choices(self.rule, RULES)}")
+        if self.step is not None:
+            _read_step(self)
         if self.axis is not None:
-            if len(self.axis) != 3 or not all(map(_is_finite, self.axis)) or not any(self.axis):
-                raise MethodError(
-                    f"axis is {self.axis!r}; it must be three finite numbers, not all zero"
-                )
-            object.__setattr__(self, "axis", tuple(float(x) for x in self.axis))
+            object.__setattr__(self, "axis", _read_axis(self.axis))
 
     def pack(self, hulls: HullSet, water: Water) -> "PackedSections":
         """Prepare hulls; along an axis of the body, tabulate their sections."""
@@ -213,10 +210,24 @@ class PackedSections:
                 )
 
 
-def _is_finite(value: object) -> bool:
-    """Whether a value is a number, and finite."""
-    return (
-        isinstance(value, int | float | np.number)
-        and not isinstance(value, bool)
-        and math.isfinite(value)
-    )
+def _read_step(method: Sections) -> None:
+    """Keep the step as a positive length [m]."""
+    try:
+        set_number(method, MethodError, "step", above=0.0)
+    except MethodError:
+        raise MethodError(
+            f"step is {describe(method.step)}; it must be a positive length [m]"
+        ) from None
+
+
+def _read_axis(axis: object) -> tuple[float, float, float]:
+    """The direction (3,) of an axis."""
+    try:
+        x, y, z = read_array(MethodError, "axis", axis, (3,)).tolist()
+    except MethodError:
+        x = y = z = 0.0
+    if not (x or y or z):
+        raise MethodError(
+            f"axis is {describe(axis)}; it must be three finite numbers, not all zero"
+        )
+    return x, y, z

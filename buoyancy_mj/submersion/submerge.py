@@ -2,13 +2,12 @@
 
 import dataclasses
 import functools
-import math
 import threading
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import MeshError
+from buoyancy_mj.errors import MeshError, describe
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels.vectors import is_rotation
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -16,6 +15,7 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.methods import Method, Packed, parse_method
+from buoyancy_mj.values import read_array, read_number
 
 
 @dataclasses.dataclass(frozen=True)
@@ -53,8 +53,10 @@ def submerge(
         method: "exact", "convex_hull" or "sections", or one of these with options.
 
     Raises:
-        MeshError: a position of the wrong shape, or a rotation that is no rotation matrix.
+        MeshError: a position of the wrong shape, a rotation that is no rotation matrix, or a time
+            that is not finite.
         MethodError: there is no such method.
+        WaterError: waves too short for so long a mesh.
 
     Example:
         >>> from buoyancy_mj.meshes import shapes
@@ -62,15 +64,10 @@ def submerge(
         0.2617...
     """
     # the pose
-    origin = np.ascontiguousarray(position, float)
-    turn = np.eye(3) if rotation is None else np.ascontiguousarray(rotation, float)
-    if origin.shape != (3,) or not math.isfinite(sum(origin.tolist(), float(time))):
-        raise MeshError(
-            f"position is {position!r} and time {time}; they must be three finite numbers and one"
-        )
-    if turn.shape != (3, 3) or not is_rotation(turn):
-        raise MeshError(f"rotation is {turn.tolist()}; it must be a rotation matrix (3, 3)")
-    pose = origin[None], turn.reshape(1, 9), float(time)
+    origin = read_array(MeshError, "position", position, (3,))
+    turn = np.eye(3) if rotation is None else _read_rotation(rotation)
+    instant = read_number(MeshError, "time", time)
+    pose = np.ascontiguousarray(origin)[None], turn.reshape(1, 9), instant
 
     # the submersion; other methods may carry something from step to step, so they are packed anew
     sea = water or _STILL
@@ -86,6 +83,18 @@ def submerge(
         wetted_area=float(row[clip.WETTED_AREA]),
         waterplane_area=float(row[clip.WATERPLANE_AREA]),
     )
+
+
+def _read_rotation(rotation: ArrayLike) -> NDArray[np.float64]:
+    """A rotation matrix (3, 3)."""
+    what = "it must be a rotation matrix (3, 3)"
+    try:
+        turn = np.ascontiguousarray(read_array(MeshError, "rotation", rotation, (3, 3)))
+    except MeshError:
+        raise MeshError(f"rotation is {describe(rotation)}; {what}") from None
+    if not is_rotation(turn):
+        raise MeshError(f"rotation is {turn.tolist()}; {what}")
+    return turn
 
 
 _STILL = Water()
