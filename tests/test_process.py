@@ -223,11 +223,11 @@ def test_a_signal_that_comes_where_python_cannot_raise_still_ends_the_command():
     ids=lambda arguments: arguments[0],
 )
 def test_a_signal_that_other_code_catches_still_ends_the_command(here, monkeypatch, arguments):
-    def deaf(scene):
+    def deaf(scene, **options):
         with contextlib.suppress(BaseException):
             signal.raise_signal(signal.SIGTERM)
         made.append(scene)
-        return Simulation(scene)
+        return Simulation(scene, **options)
 
     made = []
     monkeypatch.setattr("buoyancy_mj.cli.runs.Simulation", deaf)
@@ -464,7 +464,7 @@ def test_a_full_standard_output_is_one_sentence():
 
 
 def test_memory_that_runs_out_is_one_sentence(monkeypatch):
-    def too_much(*_):
+    def too_much(*_, **__):
         raise MemoryError
 
     monkeypatch.setattr("buoyancy_mj.cli.runs.Simulation", too_much)
@@ -585,8 +585,8 @@ def test_a_name_that_cannot_be_printed_is_refused(here, tmp_path, arguments):
     result = here(*arguments)
     assert result.exit_code == 1
     assert result.stderr == (
-        f"error: {arguments[-2]} is {arguments[-1]!r}; a file's name is one line of text, "
-        "without control characters\n"
+        f"error: {arguments[-2]} is {arguments[-1]!r}; it must be one line, "
+        f"without the control character {arguments[-1][1]!r}\n"
     )
     assert list(tmp_path.iterdir()) == []
 
