@@ -91,6 +91,19 @@ def test_bodies_with_added_mass_do_too(integrator):
     assert np.abs(end - alike(integrator=integrator)).max() > 1e-3
 
 
+def test_kinetic_energy_counts_the_added_mass_either_way():
+    energies = []
+    for through in ("qfrc_passive", "xfrc_applied"):
+        model, data = raft(more="<option><flag energy='enable'/></option>")
+        data.qvel[:] = 1.0
+        with Buoyancy(model, SEA, added_mass=ADDED_MASS).installed(through=through):
+            mujoco.mj_forward(model, data)
+        energies.append(data.energy[1])
+    mujoco.mj_forward(model, data)
+    assert energies[1] == pytest.approx(energies[0], rel=1e-12)
+    assert energies[1] > data.energy[1] + 10.0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(catalog.scenes()))
 def test_shipped_scenes_do_too(name):
@@ -170,18 +183,23 @@ def test_the_engine_counts_it_among_external_forces():
     assert np.abs(data.cfrc_ext[1]).max() > 100.0
 
 
-def test_added_mass_that_a_force_sensor_would_misread_is_refused():
-    model = mujoco.MjModel.from_xml_string(RIG)
-    message = (
-        "^the sensor 'number 0' would not read the part of the added mass that goes with "
-        "accelerations, which stands in the mass matrix and not in xfrc_applied: leave out the "
-        r"sensor, or the added mass \(added_mass='none'\)$"
-    )
-    with (
-        pytest.raises(ModelError, match=message),
-        Buoyancy(model, added_mass="estimate").installed(through="xfrc_applied"),
-    ):
-        pass
+def test_added_mass_that_a_sensor_would_misread_is_refused():
+    kinetic = RAFT.format(integrator="Euler", more="<sensor><e_kinetic name='e'/></sensor>")
+    for text, name in ((RIG, "number 0"), (kinetic, "e")):
+        model = mujoco.MjModel.from_xml_string(text)
+        message = (
+            f"^the sensor '{name}' would not read the added mass, which stands in the mass matrix "
+            "and not in xfrc_applied: leave out the sensor, or the added mass "
+            r"\(added_mass='none'\)$"
+        )
+        added_mass = {mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, 1): [1.0] * 6}
+        with (
+            pytest.raises(ModelError, match=message),
+            Buoyancy(model, added_mass=added_mass).installed(through="xfrc_applied"),
+        ):
+            pass
+        with Buoyancy(model).installed(through="xfrc_applied"):
+            pass
 
 
 # whose a row is -----------------------------------------------------------------------------------

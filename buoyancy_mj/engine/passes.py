@@ -98,9 +98,12 @@ def augment(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, l
 
 
 def _factor(model: mujoco.MjModel, data: mujoco.MjData, done: int) -> None:
-    """Let MuJoCo factor a mass matrix that was changed."""
+    """Let MuJoCo take up a mass matrix that was changed."""
     if done != passes.UNCHANGED:
         mujoco.mj_factorM(model, data)
+        # a control callback comes after the kinetic energy
+        if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_ENERGY:
+            mujoco.mj_energyVel(model, data)
     if done == passes.AUGMENT_DUAL:
         mujoco.mj_projectConstraint(model, data)
 
