@@ -231,7 +231,8 @@ class Buoyancy(ReadOnly):
 
         Raises:
             ModelError: the data are of another model.
-            EngineError: none acted on these data so far, or 64 others were stepped since.
+            EngineError: none acted on these data so far, 64 others were stepped since, or the data
+                hold other poses now.
         """
         with self._acting.lock:
             record = self._acting.last_record(data)
@@ -239,6 +240,11 @@ class Buoyancy(ReadOnly):
                 raise EngineError(
                     f"this water has not acted on these data at their time, {data.time:g} s; "
                     "step them while it acts, call mj_forward, or use evaluate"
+                )
+            if not np.array_equal(record.xipos, data.xipos, equal_nan=True):
+                raise EngineError(
+                    "the bodies of these data are elsewhere than in the last pass of this water; "
+                    "call mj_forward while it acts, or use evaluate"
                 )
             return self._read(record, data)
 
