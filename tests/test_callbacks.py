@@ -313,6 +313,44 @@ def test_the_loads_of_data_stay_while_others_are_stepped(native):
 
 
 @pytest.mark.parametrize("native", [True, False])
+def test_loads_are_not_those_of_data_that_lay_there_before_nor_of_other_poses(native):
+    model, _ = box()
+    water = Buoyancy(model)
+    with water.installed(native=native):
+        for _ in range(10):
+            data = mujoco.MjData(model)
+            with pytest.raises(EngineError):
+                water.loads(data)
+            mujoco.mj_forward(model, data)
+            water.loads(data)
+            del data
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        data.qpos[2] = 5.0
+        mujoco.mj_kinematics(model, data)
+        message = (
+            "^the bodies of these data are elsewhere than in the last pass of this water; call "
+            "mj_forward while it acts, or use evaluate$"
+        )
+        with pytest.raises(EngineError, match=message):
+            water.loads(data)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
+@pytest.mark.parametrize(
+    "way", [{}, {"native": False}, {"through": "xfrc_applied"}], ids=["compiled", "python", "xfrc"]
+)
+def test_loads_are_there_after_a_step_of_each_integrator(integrator, way):
+    model = mujoco.MjModel.from_xml_string(BOX.replace("002", f'002" integrator="{integrator}'))
+    data = mujoco.MjData(model)
+    water = Buoyancy(model)
+    with water.installed(**way):
+        for _ in range(3):
+            mujoco.mj_step(model, data)
+            assert water.loads(data).total.volume == pytest.approx(0.024)
+
+
+@pytest.mark.parametrize("native", [True, False])
 def test_the_loads_after_a_reset_are_those_of_the_last_pass(native):
     model, data = box()
     other = mujoco.MjData(model)

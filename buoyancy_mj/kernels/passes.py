@@ -74,6 +74,8 @@ class Record(NamedTuple):
     """The mass matrix with the added mass in it, as the last pass left it."""
     instant: Annotated[Doubles, (1,)]
     """Time of the pass [s]."""
+    xipos: Annotated[Doubles, ("nbody", 3)]
+    """Centres of mass of the bodies in the pass [m]."""
     ids: Annotated[Words, (IDS,)]
     """Of what the pass was, in columns `ALIVE` to `AUGMENTED`."""
 
@@ -108,6 +110,7 @@ def end(time, record):
             for i in range(6):
                 total[b, i] += cause[b, i]
     record.instant[0] = time
+    record.xipos[:, :] = bodies.xipos
 
 
 @register_jitable
