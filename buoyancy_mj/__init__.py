@@ -1,6 +1,10 @@
 """Water for MuJoCo: any MJCF vehicle floats, rights itself and rides waves, on its own meshes."""
 
+# first of all: it decides where the others come from
+from buoyancy_mj import _launch as _launch  # isort: split
+
 import dataclasses as _dataclasses
+import warnings as _warnings
 from importlib.metadata import version as _version
 
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
@@ -20,6 +24,7 @@ from buoyancy_mj.errors import SceneError as SceneError
 from buoyancy_mj.errors import SweepError as SweepError
 from buoyancy_mj.errors import WaterError as WaterError
 from buoyancy_mj.hulls.selection import Selection as Selection
+from buoyancy_mj.kernels.caches import NOTICES as _NOTICES
 from buoyancy_mj.loads.coefficients import Coefficients as Coefficients
 from buoyancy_mj.loads.coefficients import add_coefficients as add_coefficients
 from buoyancy_mj.loads.coefficients import read_coefficients as read_coefficients
@@ -32,11 +37,12 @@ from buoyancy_mj.meshes.mesh import TriMesh as TriMesh
 from buoyancy_mj.meshes.repair import repair as repair
 from buoyancy_mj.records import show_fields as _show_fields
 from buoyancy_mj.scenes.frames import Frame as Frame
-from buoyancy_mj.scenes.frames import Summary as Summary
 from buoyancy_mj.scenes.scene import Scene as Scene
-from buoyancy_mj.scenes.scene import Start as Start
 from buoyancy_mj.scenes.scene import read_scene as read_scene
+from buoyancy_mj.scenes.scene_vehicle import SceneVehicle as SceneVehicle
+from buoyancy_mj.scenes.scene_vehicle import Start as Start
 from buoyancy_mj.scenes.simulation import Simulation as Simulation
+from buoyancy_mj.scenes.summary import Summary as Summary
 from buoyancy_mj.sea.currents import CurrentProfile as CurrentProfile
 from buoyancy_mj.sea.currents import CurrentSeries as CurrentSeries
 from buoyancy_mj.sea.spectra import JonswapSea as JonswapSea
@@ -63,6 +69,9 @@ from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
 
 __version__ = _version("buoyancy_mj")
+
+for _notice in _NOTICES:
+    _warnings.warn(_notice, BuoyancyWarning, stacklevel=2)
 
 for _value in tuple(globals().values()):
     if isinstance(_value, type) and _dataclasses.is_dataclass(_value):

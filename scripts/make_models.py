@@ -40,6 +40,12 @@ MOTOR_RADIUS = 0.020
 MOTOR_LENGTH = 0.080
 STRUT_WIDTH = 0.006
 
+# a hull of the catamaran about the middle of its waterline, see models/catamaran/README.md [m]
+DEMIHULL_LENGTH = 1.600
+DEMIHULL_BEAM = 0.200
+DEMIHULL_DRAFT = 0.150
+DEMIHULL_FREEBOARD = 0.120
+
 
 def hourglass() -> Trimesh:
     """The hourglass that the reproduction of the source paper measures, z up, about its middle."""
@@ -92,6 +98,38 @@ def thruster() -> Trimesh:
     return trimesh.boolean.union([duct, motor, *struts])
 
 
+def demihull(stations: int = 32, waterlines: int = 10) -> Trimesh:
+    """Wigley's parabolic hull, y = (B / 2) (1 - (2 x / L)^2) (1 - (z / T)^2), and straight sides.
+
+    Args:
+        stations: number of strips along its length.
+        waterlines: number of strips between keel and waterline.
+    """
+    # the port side, stations by heights
+    x = np.cos(np.linspace(0.0, np.pi, stations + 1))
+    z = np.append(np.linspace(-1.0, 0.0, waterlines + 1), DEMIHULL_FREEBOARD / DEMIHULL_DRAFT)
+    half = 0.5 * DEMIHULL_BEAM * (1.0 - x[:, None] ** 2) * (1.0 - np.minimum(z, 0.0) ** 2)
+    places = np.broadcast_arrays(0.5 * DEMIHULL_LENGTH * x[:, None], half, DEMIHULL_DRAFT * z)
+    port = np.stack(places, axis=-1)
+
+    # both sides as one strip around each station, from deck to keel to deck, and the deck between
+    starboard = (port * [1.0, -1.0, 1.0])[:, ::-1]
+    strip = np.concatenate([starboard, port[:, 1:]], axis=1)
+    count = strip.shape[1]
+    i, j = np.meshgrid(np.arange(stations), np.arange(count), indexing="ij")
+    a, b = (i * count + j).ravel(), (i * count + (j + 1) % count).ravel()
+    c, d = a + count, b + count
+    faces = np.vstack([np.column_stack([a, b, d]), np.column_stack([a, d, c])])
+
+    # stem, stern and keel are edges: their vertices coincide
+    mesh = Trimesh(strip.reshape(-1, 3), faces, process=False)
+    mesh.merge_vertices()
+    mesh.update_faces(mesh.nondegenerate_faces())
+    mesh.remove_unreferenced_vertices()
+    mesh.fix_normals()
+    return mesh
+
+
 def main() -> None:
     """Write every mesh, and print its volume."""
     meshes = {
@@ -101,6 +139,7 @@ def main() -> None:
         "sauvc_auv/assets/frame": frame(),
         "sauvc_auv/assets/foam": box(FOAM_SIZE),
         "sauvc_auv/assets/thruster": thruster(),
+        "catamaran/assets/demihull": demihull(),
     }
     for name, mesh in meshes.items():
         if not (mesh.is_watertight and mesh.volume > 0.0):

@@ -41,8 +41,8 @@ COPIES = {
     "CONTRIBUTING.md": "contributing.md",
 }
 """Files at the top of the repository, and the pages that they become."""
-UNWRITTEN = ("text", "folder", "viscous")
-"""Fields that are no keys: a scene's reader fills in two, the kind of a damping is the third."""
+UNWRITTEN = ("stem", "text", "folder", "viscous")
+"""Fields that are no keys: a scene's reader fills in three, the kind of a damping is the fourth."""
 WORDS = {bool: "true or false", int: "whole number", float: "number", str: "text", Path: "path"}
 """Types as a writer of TOML says them."""
 CLASSES = {Wave: tuple(WAVES.values()), Method: tuple(METHODS.values())}
@@ -206,7 +206,9 @@ def plugin_page() -> str:
             "A value is written as in TOML, without blanks inside. A wave, a current, a method and",
             "a damping are a kind and its fields, `regular amplitude=0.3 period=2`; a semicolon",
             "separates waves. A constant current is three numbers; `geoms`, `hull` and `fill` are",
-            "patterns between blanks. The fields are those of the [tables of a scene](scene.md).\n",
+            "patterns between blanks; quotes keep one with a blank together. `add_water` writes",
+            "the key `instance` too, by which the water knows whether it was attached. The fields",
+            "are those of the [tables of a scene](scene.md).\n",
         ]
     )
 
@@ -253,7 +255,7 @@ def _classes(hint: Any) -> Iterator[type]:
         yield from CLASSES[hint]
     elif dataclasses.is_dataclass(hint):
         yield hint
-    elif typing.get_origin(hint) in (typing.Union, types.UnionType):
+    elif typing.get_origin(hint) in (typing.Union, types.UnionType, tuple):
         for part in typing.get_args(hint):
             yield from _classes(part)
 
@@ -268,7 +270,8 @@ def _value(hint: Any) -> str:
         parts = [part for part in parts if part is not type(None)]
         return " or ".join(dict.fromkeys(filter(None, map(_value, lists or parts))))
     if origin is Sequence or (origin is tuple and parts[-1] is Ellipsis):
-        return f"list of {WORDS.get(parts[0], 'table' if parts[0] in CLASSES else 'list')}s"
+        is_table = parts[0] in CLASSES or dataclasses.is_dataclass(parts[0])
+        return f"list of {WORDS.get(parts[0], 'table' if is_table else 'list')}s"
     if origin is tuple:
         return f"list of {len(parts)} {WORDS[parts[0]]}s"
     if origin is Mapping:

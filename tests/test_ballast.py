@@ -149,6 +149,19 @@ def test_the_vehicles_own_choice_of_geoms_takes_the_foam_in():
     )
 
 
+@pytest.mark.parametrize(("prefix", "suffix"), [("p_", ""), ("p/", ""), ("p_", "_1")])
+def test_so_does_the_choice_of_an_attached_vehicle(prefix, suffix):
+    custom = '<custom><text name="buoyancy_geoms" data="hull"/></custom><worldbody>'
+    text = RAFT.replace("<worldbody>", custom).replace('mass="300"', 'mass="1300"')
+    spec = mujoco.MjSpec.from_string("<mujoco/>")
+    frame = spec.worldbody.add_frame()
+    spec.attach(mujoco.MjSpec.from_string(text), prefix=prefix, suffix=suffix, frame=frame)
+    places = {"foam": f"{prefix}foam*{suffix}", "masses": f"{prefix}ballast*{suffix}"}
+    model = put(spec, ballast(spec.compile(), reserve=0.0, **places))
+    reserve = hydrostatics(model, qpos=[0, 0, -5, 1, 0, 0, 0]).reserve
+    assert reserve == pytest.approx(0.0, abs=2e-3 * 1300)
+
+
 def test_the_wanted_heel_is_where_the_righting_arm_vanishes():
     spec = raft()
     model = put(spec, ballast(spec.compile(), draft=0.3, heel=0.1))

@@ -1,3 +1,4 @@
+import re
 import warnings
 
 import mujoco
@@ -6,7 +7,17 @@ import pytest
 import shapely
 import shapely.affinity
 
-from buoyancy_mj import Buoyancy, MeshError, ModelError, RegularWave, Selection, Water
+from buoyancy_mj import (
+    Buoyancy,
+    BuoyancyWarning,
+    MeshError,
+    ModelError,
+    RegularWave,
+    Selection,
+    Water,
+    add_water,
+)
+from buoyancy_mj.hulls.convex_choice import write_patterns
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.meshes import shapes
 from tests.naive import two_cones
@@ -45,14 +56,14 @@ def names(hulls):
 
 
 def test_each_body_displaces_by_its_collision_geoms_or_else_its_visual_ones():
-    assert names(find_hulls(vehicle())) == ["hull_collision", "mast_visual", "arm/ellipsoid 5"]
+    assert names(find_hulls(vehicle())) == ["hull_collision", "mast_visual", "arm/ellipsoid 0"]
 
 
 def test_what_cannot_move_displaces_nothing():
     assert names(find_hulls(vehicle(), Selection(geoms="*"))) == [
         "hull_collision + hull_visual",
         "mast_visual",
-        "arm/ellipsoid 5",
+        "arm/ellipsoid 0",
     ]
 
 
@@ -62,8 +73,8 @@ def test_what_cannot_move_displaces_nothing():
         ("hull_visual", ["hull_visual"]),
         ("*_visual", ["hull_visual", "mast_visual"]),
         (["mast*", "hull_c*"], ["hull_collision", "mast_visual"]),
-        ("hull_visual, arm/*", ["hull_visual", "arm/ellipsoid 5"]),
-        ("group:2", ["hull_visual", "arm/ellipsoid 5"]),
+        ("hull_visual, arm/*", ["hull_visual", "arm/ellipsoid 0"]),
+        ("group:2", ["hull_visual", "arm/ellipsoid 0"]),
         (["group:3", "mast_visual"], ["hull_collision", "mast_visual"]),
     ],
 )
@@ -72,7 +83,7 @@ def test_patterns_and_groups_choose(patterns, chosen):
 
 
 def test_the_vehicle_itself_may_choose_and_the_user_overrules_it():
-    model = vehicle('<text name="buoyancy_geoms" data="hull_visual mast*"/>')
+    model = vehicle('<text name="buoyancy_geoms" data="hull_visual mast* !arm/*"/>')
     assert names(find_hulls(model)) == ["hull_visual", "mast_visual"]
     assert names(find_hulls(model, Selection(geoms="hull_collision"))) == ["hull_collision"]
 
@@ -102,7 +113,7 @@ def test_a_body_without_a_joint_is_part_of_its_parent():
     hulls = {hull.name: hull for hull in find_hulls(model)}
     assert hulls["mast_visual"].body == model.body("hull").id
     assert hulls["mast_visual"].position == pytest.approx([0.0, 0.0, 0.6])
-    assert hulls["arm/ellipsoid 5"].body == model.body("arm").id
+    assert hulls["arm/ellipsoid 0"].body == model.body("arm").id
 
 
 PAIR = """
@@ -247,7 +258,119 @@ def test_an_open_mesh_is_refused_by_the_name_of_its_geom():
         Buoyancy(tub)
 
 
+TUBS = """<mujoco><custom>{custom}</custom><asset>
+<mesh name="tub" vertex="{vertices}" face="{faces}" inertia="shell"/>
+<mesh name="bin" vertex="{vertices}" face="{faces}" inertia="shell"/></asset>
+<worldbody><body name="rov"><freejoint/>
+  <geom name="shroud 1" type="mesh" mesh="tub"/>
+  <geom name="shroud 2" type="mesh" mesh="tub" pos="3 0 0"/>
+  <geom name="shroud_drawn" type="mesh" mesh="tub" contype="0" conaffinity="0"/>
+  <geom name="foam" type="box" size=".1 .1 .1" pos="0 3 0"/>
+  <geom name="bin" type="mesh" mesh="bin" pos="6 0 0"/></body></worldbody></mujoco>"""
+
+
+def tubs(custom=""):
+    box = shapes.box((1.0, 0.5, 0.3))
+    faces = box.faces[box.area_vectors[:, 2] <= 0.0]
+    arrays = {"vertices": box.vertices, "faces": faces}
+    texts = {name: " ".join(map(str, values.ravel())) for name, values in arrays.items()}
+    return mujoco.MjModel.from_xml_string(TUBS.format(custom=custom, **texts))
+
+
+def mended_by_its_message(model, selection):
+    """The `hull=` that the refusal of a model advises, in Python."""
+    with pytest.raises(MeshError, match="it is open") as refusal:
+        find_hulls(model, selection)
+    return re.search(r"Selection\(hull='(.*?)'\)", str(refusal.value))[1]
+
+
+def test_the_mend_of_an_open_mesh_names_its_geoms_and_no_others():
+    model = tubs()
+    with pytest.raises(MeshError) as refusal:
+        find_hulls(model)
+    assert str(refusal.value) == (
+        "mesh 'tub' of geom 'shroud 1' and 1 more: it is open: 1 hole(s) with 4 edges "
+        "put 1.06 m^3 (88.65% of its volume) in doubt; close the mesh, take its convex hull "
+        "(--hull 'shroud?*=convex', in Python Selection(hull='shroud?*=convex'), "
+        'in MJCF <text name="buoyancy_hull" data="shroud?*=convex"/>), '
+        "or leave the geom out (--geoms)"
+    )
+
+
+def test_mends_taken_one_after_the_other_end_with_a_model_that_floats():
+    model = tubs()
+    first = mended_by_its_message(model, Selection())
+    second = mended_by_its_message(model, Selection(hull=first))
+    assert second == "shroud?*=convex bin=convex"
+    hulls = find_hulls(model, Selection(hull=second))
+    assert [hull.mesh.volume for hull in hulls] == pytest.approx([1.2, 1.2, 0.008, 1.2], rel=1e-6)
+
+
+def test_the_mend_keeps_what_the_model_says_of_other_hulls():
+    model = tubs('<text name="buoyancy_hull" data="bin=convex"/>')
+    assert mended_by_its_message(model, Selection()) == "shroud?*=convex bin=convex"
+
+
+@pytest.mark.parametrize(
+    ("names", "wanted", "patterns"),
+    [
+        (["fairing", "foam"], ["fairing"], ["fairing"]),
+        (["duct_1", "duct_2", "foam"], ["duct_1", "duct_2"], ["duct_*"]),
+        (["duct_1", "duct_2", "duct_3"], ["duct_1", "duct_2"], ["duct_1", "duct_2"]),
+        (["a,b", "c[d]*"], ["a,b", "c[d]*"], ["a?b", "c?d]?"]),
+        (["left=x", "y"], ["left=x"], ["left=x"]),
+    ],
+)
+def test_patterns_match_the_wanted_geoms_and_no_others(names, wanted, patterns):
+    spec = mujoco.MjSpec()
+    for name in names:
+        spec.worldbody.add_geom(name=name, size=[1, 1, 1])
+    model = spec.compile()
+    indices = [model.geom(name).id for name in wanted]
+    assert write_patterns(model, indices, range(model.ngeom)) == patterns
+
+
 def test_a_mesh_displaces_as_it_is_drawn_and_not_as_its_convex_hull():
     glass = two_cones(0.2, 0.3, sections=24)
     model = mesh_model(glass.vertices, glass.faces)
     assert find_hulls(model)[0].mesh.volume == pytest.approx(glass.volume, rel=1e-6)
+
+
+# what has no volume -------------------------------------------------------------------------------
+
+SOFT = """<mujoco><worldbody>
+<body name="boat"><freejoint/><geom type="box" size=".2 .1 .1" mass="8"/>
+<geom name="ring" type="sdf" mesh="torus" pos="0 0 1" mass="1"><plugin instance="t"/></geom></body>
+<body name="anchor" pos="0 0 2"><flexcomp name="net" type="grid" count="3 3 1" spacing=".1 .1 .1"
+  mass=".1" dim="2" radius=".01"><edge equality="true"/></flexcomp></body></worldbody>
+<extension><plugin plugin="mujoco.sdf.torus"><instance name="t"/></plugin></extension>
+<asset><mesh name="torus"><plugin instance="t"/></mesh></asset></mujoco>"""
+
+
+def test_flexes_and_distance_fields_that_displace_nothing_are_named_once():
+    model = mujoco.MjModel.from_xml_string(SOFT)
+    with pytest.warns(BuoyancyWarning) as told:
+        Buoyancy(model)
+    assert [str(entry.message) for entry in told] == [
+        "flex 'net', sdf 'ring' displace no water: only geoms of the types mesh, box, sphere, "
+        "ellipsoid, capsule and cylinder do"
+    ]
+
+
+def test_a_skin_that_displaces_nothing_is_named_once_for_all_data_of_a_model_with_water():
+    spec = mujoco.MjSpec.from_string(
+        """<mujoco><worldbody><body name="diver"><freejoint/><geom size=".2" mass="8"/></body>
+        </worldbody><deformable><skin name="suit" vertex="0 0 0 1 0 0 0 1 0" face="0 1 2">
+        <bone body="diver" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2"
+        vertweight="1 1 1"/></skin></deformable></mujoco>"""
+    )
+    add_water(spec)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        model = spec.compile()
+        for _ in range(3):
+            mujoco.MjData(model)
+    assert [str(entry.message) for entry in told] == [
+        "skin 'suit' displaces no water: only geoms of the types mesh, box, sphere, ellipsoid, "
+        "capsule and cylinder do"
+    ]

@@ -94,7 +94,9 @@ def test_what_hangs_on_joints_is_weighed():
         '<geom type="box" size=".5 .5 .5" mass="100"/></body></worldbody></mujoco>'
     )
     found = only(model)
-    assert found.sentence == "is held by its joints: free, it would float with 900 kg reserve"
+    assert found.sentence == (
+        "body 'buoy' hangs on joints: free, it would float with 900 kg reserve"
+    )
     assert found.rest is None
 
 
@@ -194,7 +196,7 @@ def test_thin_walls_open_to_the_sea_are_told():
     )
     assert part.mesh is not None
     assert "its walls are about 4.95 mm thick and it displaces" in text
-    assert "--hull convex" in text
+    assert "or take its convex hull (--hull '" in text
 
 
 def test_a_refused_mesh_is_named_and_the_rest_goes_on():
@@ -220,9 +222,20 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
     assert keel.mesh is not None
     (problem,) = found.problems
     assert "mesh 'tub' of geom 'tub': it is open: 1 hole(s) with 4 edges" in problem
-    assert "take its convex hull (--hull convex), or leave the geom out (--geoms)" in problem
+    assert "close the mesh, take its convex hull (--hull 'tub=convex', in Python" in problem
     (floating,) = found.vessels
     assert floating.total.displacement == pytest.approx(8.0)
+    # and nothing is said of how the vessel floats without it
+    assert floating.sentence == ("not known before 'tub' can displace water, see the problems")
+    assert floating.refused == ("tub",)
+    assert (floating.rest, floating.rests, floating.righting) == (None, (), None)
+    text = to_markdown(found)
+    assert "| tub | mesh | refused, see the problems |" in text
+    assert "| boat | 5 | - | - | - |" in text
+    assert "1 hole, to 1.6 m round" in text
+    assert "sinks" not in text
+    values = to_json(found)["floating"][0]
+    assert (values["refused"], values["displaced"], values["lift"]) == (["tub"], None, None)
     # as its convex hull it displaces
     convex = inspect_model(spec.compile(), selection=Selection(hull="tub=convex"))
     assert convex.problems == ()
@@ -303,6 +316,26 @@ def test_the_report_is_markdown_and_json():
     assert values["geoms"][0]["centroid"] == pytest.approx([0.0, 0.0, 0.0])
 
 
+def test_each_of_several_vessels_has_sections_with_its_name():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody>
+        <body name="tug"><freejoint/><geom type="box" size="1 .5 .3" mass="600"/></body>
+        <body name="barge" pos="0 9 0"><freejoint/><geom type="box" size="2 .5 .3" mass="500"/>
+        </body></worldbody></mujoco>"""
+    )
+    titles = [section.title for section in list_sections(inspect_model(model))]
+    assert titles[1:] == [
+        "Will 'tug' float?",
+        "'tug' at rest",
+        "Every pose in which 'tug' rests",
+        "Righting arm of 'tug' from there, trim free",
+        "Will 'barge' float?",
+        "'barge' at rest",
+        "Every pose in which 'barge' rests",
+        "Righting arm of 'barge' from there, trim free",
+    ]
+
+
 def test_centroids_are_in_the_frame_of_the_body():
     model = vessels.of_mesh(vessels.dented(4).transformed(np.eye(3), (1.0, 2.0, 3.0)), 400.0)
     (part,) = inspect_model(model).geoms
@@ -340,7 +373,7 @@ def test_inspect_prints_tables(raft):
     assert result.exit_code == 0, result.output
     for word in (
         "what displaces water",
-        "1 holes",
+        "1 hole, to ",
         "wound backwards",
         "floats:",
         "At rest",
@@ -399,6 +432,8 @@ def test_ballast_writes_a_vehicle_that_hovers(raft):
     result = raft("ballast", "--reserve", "0", *box, "--out", "heavy/raft.xml")
     assert result.exit_code == 0, result.output
     assert "kg of ballast at (" in result.stdout
+    assert "kg in all; under water: BG " in result.stdout
+    assert "draft" not in result.stdout
     found = json.loads(CliRunner().invoke(app, ["inspect", "heavy/raft.xml", "--json"]).stdout)
     assert found["floating"][0]["sentence"].startswith("hovers: neutral, BG ")
 

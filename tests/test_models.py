@@ -1,4 +1,4 @@
-"""The contract of a model folder, and what the two vehicles promise."""
+"""The contract of a model folder, and what the vehicles promise."""
 
 import importlib.util
 from pathlib import Path
@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 import trimesh
 
-from buoyancy_mj import Buoyancy, Simulation, Water, hydrostatics, read_scene, submerge
+from buoyancy_mj import (
+    Buoyancy,
+    Simulation,
+    Water,
+    equilibrium,
+    hydrostatics,
+    read_scene,
+    submerge,
+)
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.scenes import catalog
 
@@ -82,6 +90,7 @@ def test_the_meshes_are_what_the_script_makes():
         ),
         "sauvc_auv/assets/frame": script.frame(),
         "sauvc_auv/assets/thruster": script.thruster(),
+        "catamaran/assets/demihull": script.demihull(),
     }
     for name, mesh in made.items():
         committed = trimesh.load_mesh(script.MODELS / f"{name}.obj")
@@ -261,3 +270,46 @@ def test_its_coefficients_are_hulmes():
     assert added[2, 2] == pytest.approx(2 * 0.4284 * unit, rel=1e-3)
     stated = model.numeric("radiation_damping:oes_sphere").data
     assert stated[0] == pytest.approx(0.2484 * unit * 1.427, rel=1e-3)
+
+
+# the catamaran ------------------------------------------------------------------------------------
+
+
+def wigley_volume(draft):
+    """Volume of one of its hulls up to the waterline, and from there to the deck."""
+    length, beam, freeboard = 1.6, 0.2, 0.12
+    return 4.0 / 9.0 * length * beam * draft, 2.0 / 3.0 * length * beam * freeboard
+
+
+def test_the_hulls_of_the_catamaran_have_the_volume_of_wigleys_hull():
+    below, above = wigley_volume(0.15)
+    model = loaded("catamaran")
+    hull = next(hull for hull in find_hulls(model) if hull.name == "hull_port")
+    # 32 stations and 10 waterlines have 0.997 of it
+    assert hull.displaced_volume == pytest.approx(below + above, rel=4e-3)
+    assert hull.displaced_volume < below + above
+    assert submerge(hull.mesh, hull.position, hull.body_from_geom).volume == pytest.approx(
+        below, rel=6e-3
+    )
+
+
+def test_the_catamaran_floats_level_at_its_design_waterline():
+    model = loaded("catamaran")
+    assert model.body_mass.sum() == pytest.approx(44.2)
+    rest = equilibrium(model).hydrostatics
+    assert rest.draft == pytest.approx(0.235, abs=2e-3)
+    assert np.degrees([rest.heel, rest.trim]) == pytest.approx([0.0, 0.0], abs=0.1)
+    assert pytest.approx(1.1, abs=0.1) == rest.GM
+
+
+@pytest.mark.parametrize("key", ["ahead", "turning"])
+def test_the_thrusters_of_the_catamaran_drive_it_ahead_or_turn_it(key):
+    model = loaded("catamaran")
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key(key).id)
+    with Buoyancy(model).installed():
+        while data.time < 4.0:
+            mujoco.mj_step(model, data)
+    assert data.qpos[0] > 2.0 if key == "ahead" else abs(data.qpos[0]) < 0.5
+    turned = 2.0 * abs(np.arcsin(data.qpos[6]))
+    assert turned < 0.05 if key == "ahead" else turned > 0.3

@@ -361,7 +361,7 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
         buoyancy = buoyancy or Buoyancy(
             model, SEA, damping=Damping(viscous=Silhouette(coefficient=100.0))
         )
-        buoyancy._load_model.arrays.damping.linear[:] = 1.0
+        buoyancy._acting.load_model.arrays.damping.linear[:] = 1.0
         with buoyancy.installed(native=True):
             for _ in range(50):
                 mujoco.mj_step(model, data)

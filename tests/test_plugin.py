@@ -395,6 +395,30 @@ def test_data_stepped_with_another_model_are_in_its_water():
     assert np.array_equal(ends, [*alone, alone[0]])
 
 
+def test_models_of_one_hull_with_other_joints_have_waters_of_their_own():
+    def made(joint, timestep):
+        spec = mujoco.MjSpec.from_string(
+            f"""<mujoco><option timestep="{timestep}"/><worldbody><body pos="0 0 -1">{joint}
+            <geom type="box" size=".2 .15 .1" pos="0 0 .01" mass="6"/></body></worldbody>
+            </mujoco>"""
+        )
+        dry = spec.compile()
+        add_water(spec, SEA, added_mass="estimate")
+        return spec.compile(), Buoyancy(dry, SEA, added_mass="estimate")
+
+    for joint, timestep in (
+        ('<joint type="slide" axis="0 0 1"/>', 0.002),
+        ("<freejoint/>", 0.002),
+        ("<freejoint/>", 0.01),
+    ):
+        model, water = made(joint, timestep)
+        data, dry = stepped(model, 1), mujoco.MjData(water.model)
+        with water.installed():
+            mujoco.mj_step(water.model, dry)
+        assert data.qacc == pytest.approx(dry.qacc, rel=1e-12, abs=1e-12)
+        assert water_in(model).loads(data).xfrc == pytest.approx(water.loads(dry).xfrc)
+
+
 def test_geoms_that_are_resized_in_place_displace_what_they_are_then():
     model = with_water(Water(), damping=None)
     data = mujoco.MjData(model)

@@ -8,11 +8,17 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
+from typer.testing import CliRunner
 
-from buoyancy_mj import RecordingError, Simulation, read_scene
+from buoyancy_mj import DivergenceError, RecordingError, Simulation, read_scene
+from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.viz import recording as recording_module
+from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.recording import Recording
+from buoyancy_mj.viz.rrd import RrdFile
 
 SHORT = ["duration=0.5", "record_rate=30"]
 
@@ -192,7 +198,7 @@ def test_a_place_that_is_no_folder_is_reported(tmp_path):
     simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_still"], SHORT))
     with pytest.raises(
         RecordingError,
-        match=r"cannot write '.*run.partial.rrd': .*; choose another place \(--record\)",
+        match=r"cannot write '.*run.rrd': .*; choose another place \(--record\)",
     ):
         Recording(simulation, tmp_path / "file" / "run.rrd")
 
@@ -205,6 +211,66 @@ def test_every_load_of_a_sea_is_plotted_by_its_cause(tmp_path):
         assert f"/plots/force/{cause}" in found, cause
     recorded(path, "sphere_decay", ["duration=0.1"])
     assert "/plots/force/radiation" in entities(rerun("print", "-vv", str(path)).stdout)
+
+
+FLEET = """
+title = "Two"
+duration = 0.1
+[[vehicles]]
+model = "hourglass"
+name = "first"
+[[vehicles]]
+model = "hourglass"
+name = "other"
+start.position = [1.0, 0.0, 0.0]
+"""
+
+
+def test_each_of_several_vehicles_has_its_own_plots_centres_and_forces(tmp_path):
+    (tmp_path / "two.toml").write_text(FLEET)
+    simulation = Simulation(read_scene(tmp_path / "two.toml"))
+    recording = Recording(simulation, tmp_path / "run.rrd")
+    for frame in simulation.frames():
+        recording.add(frame)
+    recording.close(simulation.summary())
+    text = rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout
+    found = entities(text)
+    for name in ("first", "other"):
+        for entity in (
+            f"/plots/{name}/height/centre_of_gravity",
+            f"/plots/{name}/energy/total",
+            f"/plots/{name}/force/buoyancy",
+            f"/plots/{name}/volume/hulls/{name}/glass",
+            f"/world/centres/{name}/gravity",
+            f"/world/forces/{name}/drag",
+            f"/world/bodies/{name}/hourglass/{name}/glass",
+        ):
+            assert entity in found, entity
+    assert "/plots/height/centre_of_gravity" not in found
+    assert "/world/centres/gravity" not in found
+
+
+def test_surroundings_are_drawn_and_not_plotted(tmp_path):
+    (tmp_path / "harbour.xml").write_text(
+        """<mujoco><worldbody>
+        <body name="pier" pos="1 0 0"><geom name="wall" type="box" size=".1 1 1" mass="5"/></body>
+        <body name="goal" mocap="true" pos="0 1 0"><geom name="ring" size=".1"/></body>
+        <body name="boat"><freejoint/><geom name="hull" type="box" size=".2 .1 .1" mass="8"/></body>
+        </worldbody></mujoco>"""
+    )
+    settings = ["duration=0.1", f"vehicle='{tmp_path / 'harbour.xml'}'"]
+    simulation, _ = recorded(tmp_path / "run.rrd", settings=settings)
+    found = entities(rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout)
+    assert {
+        "/world/environment/wall",
+        "/world/bodies/goal/ring",
+        "/world/bodies/boat/hull",
+    } <= found
+    assert {name for name in found if "hulls" in name and "plots" in name} == {
+        "/plots/volume/hulls/hull"
+    }
+    # the camera and the arrows have the size of the boat
+    assert simulation.vehicle.length == pytest.approx(2.0 * np.hypot(0.2, np.hypot(0.1, 0.1)))
 
 
 @pytest.mark.parametrize("scene", ["auv_pool", "auv_drop_still"])
@@ -261,6 +327,100 @@ def test_two_runs_do_not_write_one_file(tmp_path):
     ):
         Recording(simulation, tmp_path / "run.rrd")
     assert recording.close(simulation.summary()) == tmp_path / "run.rrd"
+
+
+def test_a_file_of_the_partial_name_and_what_a_link_leads_to_are_left_alone(tmp_path):
+    (tmp_path / "target").write_text("precious")
+    (tmp_path / "run.partial.rrd").symlink_to("target")
+    (tmp_path / "run.partial-2.rrd").write_text("precious")
+    _, recording = recorded(tmp_path / "run.rrd", frames=2)
+    assert (tmp_path / "run.partial-3.rrd").stat().st_size > 10_000
+    assert recording.close() == tmp_path / "run.rrd"
+    assert rerun("verify", str(tmp_path / "run.rrd")).returncode == 0
+    assert (tmp_path / "target").read_text() == "precious"
+    assert (tmp_path / "run.partial-2.rrd").read_text() == "precious"
+    assert not (tmp_path / "run.partial-3.rrd").exists()
+
+
+def test_a_link_in_place_of_a_recording_is_replaced_and_not_followed(tmp_path):
+    (tmp_path / "target").write_text("precious")
+    (tmp_path / "run.rrd").symlink_to("target")
+    recorded(tmp_path / "run.rrd")
+    assert (tmp_path / "target").read_text() == "precious"
+    assert not (tmp_path / "run.rrd").is_symlink()
+
+
+def test_ctrl_c_before_the_first_frame_leaves_nothing(tmp_path, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(BodyDrawing, "draw_static", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        recorded(tmp_path / "run.rrd")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_ctrl_c_while_the_footer_is_added_leaves_a_recording_without(tmp_path, monkeypatch):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    simulation, recording = recorded(tmp_path / "run.rrd", frames=3)
+    with monkeypatch.context() as patched:
+        patched.setattr(subprocess, "run", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            recording.close(simulation.summary())
+    assert [path.name for path in tmp_path.iterdir()] == ["run.rrd"]
+    assert recording.closed
+    assert "/world/bodies/hourglass" in entities(
+        rerun("print", "-vv", str(tmp_path / "run.rrd")).stdout
+    )
+
+
+@pytest.mark.parametrize("when", ["a frame is added", "it is closed"])
+def test_a_run_that_breaks_off_says_why_and_where_its_recording_is(tmp_path, monkeypatch, when):
+    monkeypatch.chdir(tmp_path)
+    target, name = {
+        "a frame is added": (BodyDrawing, "draw"),
+        "it is closed": (recording_module, "_summary_text"),
+    }[when]
+    calls = []
+    original = getattr(target, name)
+
+    def third(*arguments, **options):
+        calls.append(1)
+        if len(calls) == (3 if name == "draw" else 1):
+            raise KeyboardInterrupt
+        return original(*arguments, **options)
+
+    monkeypatch.setattr(target, name, third)
+    arguments = shlex.split("run hourglass_drop_still --duration 0.2 --record run.rrd")
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 130
+    assert re.fullmatch(r"the recording up to 0\.\d\d s is in 'run.rrd'\n", result.stderr)
+    assert rerun("verify", "run.rrd").returncode == 0
+
+
+def test_a_full_disk_at_the_end_of_a_run_that_diverged_hides_neither(tmp_path, monkeypatch):
+    def full(self):
+        if self._written > 100_000:
+            self.close(complete=False)
+            raise RecordingError("the recording broke off: No space left on device; ...")
+        return write(self)
+
+    def diverges(_):
+        raise DivergenceError("the simulation diverged")
+
+    write = RrdFile.write
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(RrdFile, "write", full)
+    monkeypatch.setattr(Simulation, "step", diverges)
+    arguments = shlex.split("run hourglass_drop_still --duration 0.2 --record run.rrd")
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 1
+    assert result.stderr == (
+        "note: the recording broke off: No space left on device; ...\n"
+        "error: the simulation diverged\n"
+    )
 
 
 @pytest.mark.slow

@@ -95,7 +95,8 @@ def test_a_small_hole_is_closed_and_its_doubt_reported():
 def test_an_open_box_is_refused_with_the_volume_in_doubt():
     with pytest.raises(
         MeshError,
-        match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; close the mesh, take",
+        match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; "
+        "close the mesh, or take its convex hull instead",
     ):
         repair(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
 
@@ -120,7 +121,7 @@ def test_a_mesh_that_crosses_itself_is_refused():
     with pytest.raises(
         MeshError,
         match=r"ring: it crosses itself: about .* is enclosed twice and .* inside out, "
-        r".*--hull convex",
+        r".*; join its parts by a boolean union, or take its convex hull instead",
     ):
         repair(ball, SPHERE.faces, name="ring")
 
@@ -182,9 +183,7 @@ def test_a_diagnosis_of_what_is_refused_keeps_what_it_found():
     tub = diagnose(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
     assert tub.mesh is None
     assert tub.refusal.startswith("tub: it is open: 1 hole(s) with 4 edges")
-    assert tub.refusal.endswith(
-        "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)"
-    )
+    assert tub.refusal.endswith("; close the mesh, or take its convex hull instead")
     assert [hole.perimeter for hole in tub.holes] == pytest.approx([6.0])
 
 

@@ -1,6 +1,7 @@
 import math
 import re
 import textwrap
+from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -13,6 +14,7 @@ from buoyancy_mj import (
     LevelOscillation,
     ModelError,
     RegularWave,
+    Scene,
     SceneError,
     Silhouette,
     Simulation,
@@ -81,6 +83,9 @@ def test_a_scene_is_read_into_what_it_says(folder):
         ("integrator=RK4", lambda s: s.integrator == "RK4"),
         ('geoms=["hull*", "group:2"]', lambda s: s.selection.geoms == ("hull*", "group:2")),
         ("vehicle=sauvc_auv", lambda s: s.vehicle == "sauvc_auv"),
+        ("vehicle=sauvc_auv", lambda s: s.title == "sauvc_auv in the scene scene"),
+        ("vehicle=sauvc_auv", lambda s: s.stem == "sauvc_auv"),
+        ("vehicle=box.xml", lambda s: (s.title, s.stem) == ("A box", "scene")),
     ],
 )
 def test_any_field_can_be_set(folder, setting, look):
@@ -387,6 +392,116 @@ def test_mujocos_own_fluid_is_reported_as_double_drag(folder, option):
         simulation_of(folder, xml)
 
 
+# surroundings -------------------------------------------------------------------------------------
+
+FREE = "<freejoint/>"
+STILL = ("water.waves=[]", "water.density=1000")
+SURROUNDINGS = {
+    "a pier": '<body name="pier" pos="6 0 0"><geom type="box" size=".5 2 1" mass="5000"/></body>',
+    "a mocap body": '<body name="goal" mocap="true" pos="5 0 0"><geom size=".3" mass="70"/></body>',
+    "a mocap body with a flag": """<body name="goal" mocap="true" pos="5 0 0"><geom size=".3"/>
+        <body name="flag" pos="0 0 1"><geom size=".1" mass="9"/></body></body>""",
+    "a pier with a crane": """<body name="pier" pos="6 0 0"><geom type="box" size=".5 2 1"/>
+        <body name="crane" pos="0 0 2"><joint axis="0 0 1" damping="100"/>
+        <inertial pos="0 0 0" mass="30" diaginertia="1 1 1"/></body></body>""",
+}
+
+
+def behind(first, joint=FREE):
+    """The box, with something before it in the file."""
+    return BOX.format(joint=joint, more="", rest="").replace("<worldbody>", f"<worldbody>{first}")
+
+
+@pytest.mark.parametrize("first", SURROUNDINGS.values(), ids=SURROUNDINGS)
+def test_mass_and_centre_of_gravity_reach_the_vehicle_wherever_surroundings_stand(folder, first):
+    settings = ["mass=6", "cog_shift=[0.01, 0.02, -0.03]", "start.position=[0, 0, 0.3]", *STILL]
+    simulation = simulation_of(folder, behind(first), *settings)
+    model = simulation.model
+    assert simulation.vehicle.name == "box"
+    assert simulation.mass == pytest.approx(6.0)
+    assert model.body("box").mass == pytest.approx(6.0)
+    assert model.body("box").ipos == pytest.approx([0.01, 0.02, -0.03])
+    assert simulation.vehicle.root == model.body("box").id
+    frame = next(simulation.frames())
+    assert frame.centre_of_mass == pytest.approx([0.01, 0.02, 0.27])
+    assert frame.draft == pytest.approx(-0.25)
+    for name in ("pier", "goal", "flag", "crane"):
+        if f'"{name}"' in first:
+            alone = mujoco.MjModel.from_xml_string(behind(first))
+            assert model.body(name).mass == alone.body(name).mass
+
+
+def test_the_boat_behind_a_pier_floats_at_the_draft_of_its_own_mass():
+    file = Path(__file__).parent / "data" / "pier" / "harbour.xml"
+    scene = Scene(title="pier", vehicle=str(file), mass=10.0, duration=20.0)
+    simulation = Simulation(scene)
+    list(simulation.frames())
+    summary = simulation.summary()
+    assert summary.mass == pytest.approx(10.0)
+    assert summary.net_weight == pytest.approx(-6.0 * 9.81)
+    assert summary.final_draft == pytest.approx(0.125, abs=2e-3)
+
+
+def test_a_static_body_among_others_gets_no_free_joint_where_one_has_it(folder):
+    simulation = simulation_of(folder, behind(SURROUNDINGS["a pier"]))
+    assert simulation.model.njnt == 1
+    with pytest.raises(
+        ModelError,
+        match=r"has 2 bodies without a joint \('pier', 'box'\); give the one that floats",
+    ):
+        simulation_of(folder, behind(SURROUNDINGS["a pier"], joint=""))
+
+
+def test_each_of_several_free_bodies_is_a_vehicle_of_its_own(folder):
+    buoy = '<body name="buoy" pos="2 0 0"><freejoint/><geom size=".2" mass="10"/></body>'
+    simulation = simulation_of(folder, behind(buoy), "start.position=[2, 0, 0]", *STILL)
+    list(simulation.frames())
+    summary = simulation.summary()
+    assert {name: one.mass for name, one in summary.vehicles.items()} == pytest.approx(
+        {"buoy": 10.0, "box": 4.0}
+    )
+    assert summary.vehicles["box"].displacement == pytest.approx(12.0)
+    with pytest.raises(
+        SceneError,
+        match=re.escape(
+            "cog_shift does not say which of 2 floating bodies of 'box.xml' it shifts "
+            "('buoy', 'box'); put each into a file of its own, and these under [[vehicles]]"
+        ),
+    ):
+        simulation_of(folder, behind(buoy), "cog_shift.2=0.1")
+
+
+def test_bodies_that_a_weld_holds_together_are_one_vehicle(folder):
+    deck = '<body name="deck" pos="0 0 .1"><freejoint/><geom size=".05" mass="1"/></body>'
+    xml = behind(deck).replace(
+        "</mujoco>", '<equality><weld body1="deck" body2="box"/></equality></mujoco>'
+    )
+    simulation = simulation_of(folder, xml, "mass=10")
+    assert simulation.mass == pytest.approx(10.0)
+    assert len(simulation.hulls) == 2
+
+
+def test_what_hangs_on_a_pier_keeps_its_mass_beside_what_floats_freely(folder):
+    crane = SURROUNDINGS["a pier with a crane"].replace(
+        '<inertial pos="0 0 0" mass="30" diaginertia="1 1 1"/>', '<geom size=".1" mass="30"/>'
+    )
+    simulation = simulation_of(folder, behind(crane), "mass=6", "start.at=equilibrium", *STILL)
+    assert simulation.vehicles["crane"].mass == pytest.approx(30.0)
+    assert simulation.vehicles["box"].mass == pytest.approx(6.0)
+    assert simulation.data.qpos[3] == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_vehicle_that_displaces_nothing_is_refused(folder):
+    buoy = '<body name="buoy" pos="2 0 0"><freejoint/><geom name="ball" size=".2"/></body>'
+    (folder / "pool.xml").write_text(f"<mujoco><worldbody>{buoy}</worldbody></mujoco>")
+    settings = ["environment=pool.xml", 'geoms=["environment/*"]']
+    with pytest.raises(
+        ModelError,
+        match=re.escape("the vehicle displaces no water; choose geoms of its own (--geoms)"),
+    ):
+        Simulation(read_scene(folder / "scene.toml", settings))
+
+
 # running ------------------------------------------------------------------------------------------
 
 
@@ -490,18 +605,144 @@ def test_a_steep_simulation_that_runs_away_is_reported(folder):
         list(simulation.frames())
 
 
+@pytest.mark.parametrize("scene", ["auv_sea_state_2", "hourglass_drop_waves", "auv_drop_still"])
+def test_the_draft_is_the_depth_of_the_deepest_of_all_vertices(scene):
+    simulation = Simulation(read_scene(catalog.scenes()[scene]))
+    data, water = simulation.data, simulation.scene.water
+    rng = np.random.default_rng(0)
+    for time in rng.uniform(0.0, 60.0, 8):
+        data.time = time
+        data.qpos[:7] = [*rng.uniform(-9.0, 9.0, 2), rng.uniform(-1.0, 0.5), *rng.normal(size=4)]
+        frame = simulation._frame()
+        depths = [
+            water.depth(
+                hull.mesh.vertices @ frame.data.geom_xmat[hull.geom].reshape(3, 3).T
+                + frame.data.geom_xpos[hull.geom],
+                time,
+            ).max()
+            for hull in simulation.hulls
+        ]
+        assert frame.draft == pytest.approx(max(depths), abs=1e-9)
+
+
+def run_of(folder, *settings):
+    (folder / "floor.xml").write_text(
+        """<mujoco><worldbody>
+        <geom name="bed" type="box" size="2 2 .1" pos="0 0 -3.1"/></worldbody></mujoco>"""
+    )
+    simulation = Simulation(read_scene(folder / "scene.toml", [*settings, *STILL]))
+    list(simulation.frames())
+    return simulation.summary()
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        (
+            ["start.velocity=[2e6, 0, 0]"],
+            "the simulation diverged at 0 s: body 'box' moves at 2e+06 m/s (more than 1,000); "
+            "try a smaller timestep (now 0.01 s) or another integrator (now implicitfast)",
+        ),
+        (
+            ["start.velocity=[900, 0, 0]", "duration=200", "timestep=0.1", "damping=false"],
+            "s: body 'box' is 1e+05 m from its start (more than 100,000); try a smaller timestep",
+        ),
+        (
+            [
+                "environment=floor.xml",
+                "start.velocity=[0, 0, -900]",
+                "start.position.2=-1",
+                "damping=false",
+            ],
+            "the simulation diverged at 0.01 s: body 'box' has gone through the bottom, "
+            "to z = -9.998 m; try a smaller timestep (now 0.01 s)",
+        ),
+    ],
+)
+def test_speeds_and_places_beyond_reason_end_a_run(folder, settings, message):
+    with pytest.raises(DivergenceError, match=re.escape(message)):
+        run_of(folder, *settings)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        # beside the floor, and over its edge
+        ["start.position=[5, 0, -1]", "mass=30"],
+        ["start.position=[1.9, 0, -1]", "start.velocity=[5, 0, 0]", "mass=30"],
+        # from below, though as deep
+        ["start.position=[0, 0, -5]", "start.velocity=[0, 0, -5]", "mass=30"],
+        # fast, but not absurdly
+        ["start.position=[0, 0, 9]", "start.velocity=[900, 0, 0]", "duration=0.1"],
+    ],
+)
+def test_who_never_was_over_the_floor_or_left_it_by_its_edge_may_sink(folder, settings):
+    summary = run_of(folder, "environment=floor.xml", "duration=3", "damping=false", *settings)
+    assert summary.peak_draft > 3.5 or summary.simulated_time == pytest.approx(0.1)
+
+
+def test_a_body_that_can_touch_nothing_is_told_why_it_went_through_the_bottom(folder):
+    text = BOX.format(joint=FREE, more="", rest="").replace(
+        'type="box"', 'type="box" contype="0" conaffinity="0"'
+    )
+    (folder / "box.xml").write_text(text)
+    settings = ["environment=floor.xml", "mass=40", "start.position.2=-2", "duration=9"]
+    with pytest.raises(
+        DivergenceError,
+        match=r"^the simulation diverged at .* s: body 'box' has gone through the bottom, to z = "
+        r"-3\.4.* m; none of its geoms can touch it, so give one contype and conaffinity of 1$",
+    ):
+        run_of(folder, *settings)
+
+
+def test_a_part_that_hangs_through_the_bottom_does_not_end_a_run(folder):
+    # the propeller touches nothing, and turns below the floor on which the hull lies
+    propeller = """<body name="propeller" pos="0 0 -.6"><joint axis="0 0 1"/>
+        <geom size=".05" mass=".1" contype="0" conaffinity="0"/></body>"""
+    (folder / "box.xml").write_text(BOX.format(joint=FREE, more=propeller, rest=""))
+    summary = run_of(
+        folder, "environment=floor.xml", "mass=40", "start.position.2=-2.8", "duration=2"
+    )
+    assert summary.contact_steps > 10
+    assert summary.final_draft > 3.4
+
+
+def test_the_limits_hold_for_what_floats_in_the_environment_too(folder):
+    (folder / "pool.xml").write_text(
+        """<mujoco><worldbody><body name="buoy" pos="3 0 0"><freejoint/><geom size=".1"/></body>
+        </worldbody></mujoco>"""
+    )
+    simulation = Simulation(read_scene(folder / "scene.toml", ["environment=pool.xml"]))
+    simulation.data.qpos[7] = 1e7
+    with pytest.raises(
+        DivergenceError, match="body 'environment/buoy' is 1e\\+07 m from its start"
+    ):
+        simulation.step()
+
+
+def test_a_body_may_be_set_elsewhere_between_steps(folder):
+    simulation = Simulation(read_scene(folder / "scene.toml"))
+    for x in (0.0, 500.0):
+        simulation.data.qpos[0] = x
+        simulation.step()
+    assert simulation.data.qpos[0] == pytest.approx(500.0, abs=1.0)
+
+
 @pytest.mark.parametrize("name", sorted(catalog.scenes()))
 def test_every_scene_that_ships_runs(name):
     simulation = Simulation(read_scene(catalog.scenes()[name]))
     frames = [
-        (frame.time, *frame.centre_of_mass, frame.energy.total) for frame in simulation.frames()
+        (frame.time, *vehicle.centre_of_mass, vehicle.energy.total)
+        for frame in simulation.frames()
+        for vehicle in frame.vehicles.values()
     ]
     assert np.isfinite(frames).all()
     summary = simulation.summary()
     assert summary.simulated_time == pytest.approx(simulation.scene.duration)
-    # all float, but the ROV in fresh water
-    assert (summary.net_weight < 0.0) == (name != "bluerov2_heavy_dive")
-    assert math.isfinite(summary.cog_z_range)
+    for vehicle in summary.vehicles.values():
+        # all float, but the ROV in fresh water
+        assert (vehicle.net_weight < 0.0) == (name != "bluerov2_heavy_dive")
+        assert math.isfinite(vehicle.cog_z_range)
 
 
 def test_the_source_papers_scenes_keep_its_numbers():

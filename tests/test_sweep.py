@@ -1,7 +1,8 @@
 """Sweeps: a row is what a run of its own gives, after any interruption, and failures are rows."""
 
 import csv
-import dataclasses
+import errno
+import os
 import shlex
 import signal
 import subprocess
@@ -11,11 +12,12 @@ import time
 import numpy as np
 import pyarrow.parquet
 import pytest
+import trimesh
 from typer.testing import CliRunner
 
 from buoyancy_mj import SceneError, Simulation, SweepError, read_scene
 from buoyancy_mj.cli import app
-from buoyancy_mj.scenes import catalog, sweep
+from buoyancy_mj.scenes import catalog, journal, sweep
 from buoyancy_mj.scenes.ranges import FieldRange, draws, grid, parse_range
 from buoyancy_mj.scenes.sweep import Sweep
 
@@ -72,7 +74,7 @@ def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
         for _ in range(alone.steps):
             alone.step()
         alone._frame()
-        summary = dataclasses.asdict(alone.summary())
+        summary = alone.summary().values()
         for name in (
             "mass",
             "displacement",
@@ -281,3 +283,181 @@ def test_the_command_tells_how_many_failed(tmp_path):
     assert [row["status"] for row in read(out)] == ["failed", "failed", "done"]
     result = CliRunner().invoke(app, [*arguments[:3], "mass=1:2", *arguments[4:]])
     assert result.exit_code == 1
+
+
+def test_a_sweep_whose_runs_all_fail_fails(tmp_path):
+    out = tmp_path / "rows.csv"
+    arguments = ["sweep", "hourglass_drop_still", "--over", "mass=-2:-1:2", "--out", str(out)]
+    for _ in range(2):
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code == 1
+        assert result.stdout.replace("\n", "") == f"2 runs, 2 failed: {out}"
+        assert result.stderr == (
+            "error: all 2 runs failed; the first: scene 'hourglass_drop_still': "
+            "mass is -2 kg; it must be positive\n"
+        )
+
+
+MESH = """<mujoco><asset><mesh name="block" file="block.obj"/></asset>
+<worldbody><body><freejoint/><geom type="mesh" mesh="block" density="500"/></body></worldbody>
+</mujoco>"""
+BLOCK = trimesh.creation.box((0.4, 0.3, 0.2)).export(file_type="obj")
+
+
+def test_a_file_that_is_missing_stops_a_sweep_and_fails_no_run(tmp_path, monkeypatch):
+    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    (tmp_path / "block.xml").write_text(MESH)
+    mesh = tmp_path / "block.obj"
+    mesh.write_text(BLOCK)
+    vehicle = f'vehicle="{tmp_path}/block.xml"'
+    wanted = plan(tmp_path, "start.position.2=0:1:3", settings=("duration=0.05", vehicle))
+    going = wanted.run()
+    next(going)
+    mesh.unlink()
+    with pytest.raises(SweepError) as told:
+        next(going)
+    assert str(told.value) == (
+        f"the sweep stopped: MuJoCo cannot compile '{tmp_path}/block.xml': Error: Error opening "
+        f"file 'block.obj'; '{wanted.out}' holds 1 row, and the same command goes on from there"
+    )
+    mesh.write_text(BLOCK)
+    assert [row["status"] for row in wanted.run()] == ["done"] * 3
+
+
+@pytest.mark.parametrize("content", [None, "<mujoco><worldbody>"])
+def test_an_environment_that_cannot_be_read_stops_a_sweep_and_leaves_no_file(tmp_path, content):
+    file = tmp_path / "around.xml"
+    if content is not None:
+        file.write_text(content)
+    wanted = plan(tmp_path, "mass=20:21:2", settings=(f'environment="{file}"',))
+    told = (
+        r"stopped: (there is no environment|MuJoCo cannot read) .*around.xml'.*; no run was done$"
+    )
+    with pytest.raises(SweepError, match=told):
+        list(wanted.run())
+    assert not wanted.out.exists()
+
+
+def test_memory_that_runs_out_stops_a_sweep_and_fails_no_run(tmp_path, monkeypatch):
+    def too_much(*_):
+        raise MemoryError("Unable to allocate 3 TiB")
+
+    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    wanted = plan(tmp_path, "mass=20:21:2")
+    going = wanted.run()
+    next(going)
+    with monkeypatch.context() as patched:
+        patched.setattr(sweep, "run_simulations", too_much)
+        with pytest.raises(SweepError) as told:
+            next(going)
+    assert str(told.value) == (
+        f"the sweep stopped: Unable to allocate 3 TiB; '{wanted.out}' holds 1 row, and the same "
+        "command goes on from there"
+    )
+    assert [row["status"] for row in wanted.run()] == ["done"] * 2
+
+
+class FullDisk:
+    """A file that takes a few more letters, and then no more."""
+
+    def __init__(self, file, room):
+        self._file, self._room = file, room
+
+    def __getattr__(self, name):
+        return getattr(self._file, name)
+
+    def write(self, content):
+        if not self._room:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        written = self._file.write(content[: self._room])
+        self._room -= written
+        return written
+
+
+@pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
+def test_a_full_disk_stops_a_sweep_at_a_whole_row(name, tmp_path, monkeypatch):
+    opened = journal._open_locked
+    monkeypatch.setattr(
+        journal, "_open_locked", lambda *a, **k: FullDisk(opened(*a, **k), room=500)
+    )
+    wanted = plan(tmp_path, "start.position.2=0.3:0.9:6", name=name)
+    kept = tmp_path / ("out.csv" if name == "out.csv" else "out.partial.csv")
+    rows = []
+    with pytest.raises(SweepError) as told:
+        rows.extend(wanted.run())
+    monkeypatch.undo()
+    held = read(kept)
+    assert 0 < len(held) < 6
+    assert kept.read_bytes().endswith(b"\n")
+    assert str(told.value) == (
+        f"cannot write to '{kept}': No space left on device; '{kept}' holds {len(held)} "
+        f"row{'' if len(held) == 1 else 's'}, and the same command goes on from there"
+    )
+    assert [row["run"] for row in wanted.run()] == ["0", "1", "2", "3", "4", "5"]
+
+
+def test_a_full_disk_under_a_table_leaves_its_rows(tmp_path, monkeypatch):
+    def full(_, path):
+        path.write_bytes(b"half")
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    wanted = plan(tmp_path, "mass=20:21:2", name="out.parquet")
+    with monkeypatch.context() as patched:
+        patched.setattr(pyarrow.parquet, "write_table", full)
+        with pytest.raises(SweepError, match=r"cannot write '.*out.parquet': .*No space left"):
+            list(wanted.run())
+    assert [path.name for path in tmp_path.iterdir()] == ["out.partial.csv"]
+    assert len(list(wanted.run())) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["out.parquet"]
+
+
+# what is there already ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
+def test_two_sweeps_do_not_write_one_file(name, tmp_path):
+    going = plan(tmp_path, "mass=20:21:2", name=name).run()
+    next(going)
+    kept = tmp_path / ("out.csv" if name == "out.csv" else "out.partial.csv")
+    with pytest.raises(SweepError) as told:
+        next(plan(tmp_path, "mass=20:21:2", name=name).run())
+    assert str(told.value) == (
+        f"another sweep is writing '{kept}'; wait for its end, or give another --out"
+    )
+    assert [row["status"] for row in going] == ["done"]
+
+
+@pytest.mark.parametrize("content", ["precious", "precious\nlines\n", "run,scene\n", "\xff"])
+@pytest.mark.parametrize("name", ["out.csv", "out.partial.csv"])
+def test_a_file_that_is_no_sweep_is_left_alone(name, content, tmp_path):
+    file = tmp_path / name
+    file.write_bytes(content.encode("latin-1"))
+    out = name.replace(".partial.csv", ".parquet")
+    with pytest.raises(SweepError, match=r"give another --out, or remove it$"):
+        next(plan(tmp_path, "mass=20:21:2", name=out).run())
+    assert file.read_bytes() == content.encode("latin-1")
+
+
+def test_a_link_in_place_of_a_journal_is_not_followed(tmp_path):
+    (tmp_path / "out.partial.csv").symlink_to("elsewhere.csv")
+    with pytest.raises(SweepError, match=r"cannot keep results in '.*out.partial.csv'"):
+        next(plan(tmp_path, "mass=20:21:2", name="out.parquet").run())
+    assert not (tmp_path / "elsewhere.csv").exists()
+
+
+def test_a_table_of_somebody_else_is_not_replaced(tmp_path):
+    out = tmp_path / "out.parquet"
+    pyarrow.parquet.write_table(pyarrow.table({"mine": pyarrow.array([], "int64")}), out)
+    before = out.read_bytes()
+    with pytest.raises(SweepError, match="holds other columns than this sweep has"):
+        next(plan(tmp_path, "mass=20:21:2", name="out.parquet").run())
+    assert out.read_bytes() == before
+
+
+def test_a_reason_is_one_line(tmp_path, monkeypatch):
+    reason = 'two\nlines,\u2028and "quotes"'
+    monkeypatch.setattr(sweep, "run_simulations", lambda some, _: [(n, reason) for n in some])
+    wanted = plan(tmp_path, "mass=20:21:2")
+    rows = list(wanted.run())
+    assert [row["reason"] for row in rows] == ['two lines, and "quotes"'] * 2
+    assert list(wanted.run()) == rows

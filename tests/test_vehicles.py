@@ -102,14 +102,16 @@ def test_a_base_without_inertia_is_reported(tmp_path):
     refused(
         path,
         "a body that floats needs mass and inertia: give it an <inertial>, "
-        "or bound them by <compiler boundmass",
+        "or bound them by <mujoco><compiler boundmass",
     )
 
 
-def test_a_mesh_in_ascii_is_reported(tmp_path):
+def test_a_mesh_in_ascii_is_read(tmp_path):
     stl(tmp_path, "base.stl", shapes.box((0.2, 0.2, 0.1)), kind="stl_ascii")
     path = write(tmp_path, "robot.urdf", URDF.format(file="base.stl", mass=10, inertia=0.2))
-    refused(path, "save the mesh as a binary STL or as OBJ")
+    found, _ = inspect_model(path)
+    assert found["geoms"][0]["volume"] == pytest.approx(0.032, rel=1e-6)
+    assert ran(path)[0]["mass"] == pytest.approx(11.0)
 
 
 # MJCF of simulated animals
@@ -135,6 +137,60 @@ def test_what_swims_without_gravity_weighs_in_water(tmp_path, gravity, flag, tol
     assert told in notes
     assert "ground plane 'pond'" in notes
     assert summary["net_weight"] < 0.0
+
+
+@pytest.mark.parametrize("flag", ["false", "true"])
+def test_a_fin_that_is_drawn_alone_displaces_whether_or_not_visual_geoms_are_discarded(
+    tmp_path, flag
+):
+    path = write(
+        tmp_path,
+        "fin.xml",
+        f'<mujoco><compiler discardvisual="{flag}"/><worldbody><body name="b"><freejoint/>'
+        '<geom type="box" size=".1 .1 .1" mass="4"/><body name="fin" pos="0 0 -.2"><joint/>'
+        '<geom name="fin" type="box" size=".1 .1 .1" mass="1" contype="0" conaffinity="0"/>'
+        "</body></body></worldbody></mujoco>",
+    )
+    assert inspect_model(path)[0]["floating"][0]["displaced"] == pytest.approx(16.0)
+    assert ran(path)[0]["mass"] == pytest.approx(5.0)
+
+
+FUSED = """<mujoco><compiler fusestatic="{flag}"/><worldbody>
+<body name="mark" pos="9 0 0"><geom size=".1" contype="0" conaffinity="0"/></body>
+<body name="b"><freejoint/><geom type="box" size=".1 .1 .1" mass="4"/>
+<body name="mast" pos="0 0 .2"><geom type="box" size=".01 .01 .1" mass="1"/></body>
+</body></worldbody></mujoco>"""
+BUOYS = """<mujoco><worldbody>{}</worldbody></mujoco>""".format(
+    "".join(
+        f'<body pos="{x} 5 0"><freejoint/><geom type="box" size=".1 .1 .1" mass="4"/></body>'
+        for x in range(3)
+    )
+)
+
+
+@pytest.mark.parametrize("flag", ["false", "true"])
+def test_what_floats_in_the_environment_is_no_part_of_a_vehicle_whose_bodies_are_fused(
+    tmp_path, flag
+):
+    path = write(tmp_path, "rov.xml", FUSED.format(flag=flag))
+    buoys = write(tmp_path, "buoys.xml", BUOYS)
+    summary, _ = ran(path, "--set", f"environment='{buoys}'")
+    assert summary["displacement"] == pytest.approx(8.08)
+
+
+# plates
+
+
+@pytest.mark.parametrize("size", [".5 .5 1e-17", "1e-17 1e-17 .5"])
+def test_what_is_too_thin_for_a_convex_hull_runs_beside_what_floats(tmp_path, size):
+    path = write(
+        tmp_path,
+        "plate.xml",
+        f'<mujoco><worldbody><body name="b"><freejoint/><geom type="box" size="{size}" mass="0"/>'
+        '<geom type="box" size=".1 .1 .1" pos="0 0 2" mass="4"/></body></worldbody></mujoco>',
+    )
+    inspect_model(path)
+    assert ran(path)[0]["mass"] == pytest.approx(4.0)
 
 
 # hulls of ships
@@ -181,8 +237,10 @@ def test_an_open_shell_is_refused_and_its_convex_hull_floats(tmp_path):
     result = CliRunner().invoke(app, ["run", "auv_waves", "--vehicle", path, "--no-record"])
     assert result.exit_code == 1
     assert (
-        "close the mesh, take its convex hull (--hull convex), or leave the geom out (--geoms)"
-        in result.stderr
+        "close the mesh, take its convex hull (--hull 'shell=convex', in Python "
+        "Selection(hull='shell=convex'), "
+        'in MJCF <text name="buoyancy_hull" data="shell=convex"/>), '
+        "or leave the geom out (--geoms)" in result.stderr
     )
     found, _ = inspect_model(path, "--hull", "convex")
     assert found["geoms"][0]["hull"] == "convex"

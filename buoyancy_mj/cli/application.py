@@ -1,9 +1,9 @@
 """The application: how its commands are registered, and how they report errors."""
 
+import errno
 import functools
 import inspect
 import io
-import signal
 import sys
 import warnings
 from collections.abc import Callable, Iterator
@@ -16,6 +16,8 @@ import typer
 from buoyancy_mj import __version__
 from buoyancy_mj.cli.console import err, print_line
 from buoyancy_mj.cli.flags import check_texts, collect_flags, spread_flags
+from buoyancy_mj.cli.signals import Stop, raise_later, raise_signals
+from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import BuoyancyError
 
 app = typer.Typer(no_args_is_help=True, rich_markup_mode=None)
@@ -72,31 +74,41 @@ def main(
 def _report_errors() -> Iterator[None]:
     """Print errors of this package, and warnings as notes, as lines on the standard error.
 
-    An error ends the command with exit status 1, an interrupt with 130, as shells have it.
+    An error ends the command with exit status 1, a signal with 128 and its number: Ctrl-C with 130,
+    SIGTERM with 143.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("always")
         warnings.showwarning = _print_note
         # MuJoCo's own warnings would go to a file in the working folder
         mujoco.set_mju_user_warning(_print_mujoco_warning)
-        signal.signal(signal.SIGTERM, _interrupt)
         # what a terminal has no letters for is shown by its number
         for stream in (sys.stdout, sys.stderr):
             if isinstance(stream, io.TextIOWrapper):
                 stream.reconfigure(errors="backslashreplace")
         try:
-            yield
+            with raise_signals(), raise_causes():
+                yield
         except BuoyancyError as error:
-            print_line(err, f"error: {error}", style="red")
-            raise typer.Exit(1) from error
+            _fail(str(error), error)
+        except MemoryError as error:
+            _fail("the memory ran out; ask for less at once, or for a shorter run", error)
         except OSError as error:
-            # what is neither a file's nor the end of a pipe is the output's
-            if error.filename is not None or isinstance(error, BrokenPipeError):
+            # a reader that has gone wants no more, and typer knows that
+            if error.errno == errno.EPIPE:
                 raise
-            print_line(err, f"error: the output cannot be written: {error.strerror}", style="red")
-            raise typer.Exit(1) from error
+            what = "the output" if error.filename is None else f"'{error.filename}'"
+            _fail(f"{what} cannot be read or written: {error.strerror or error}", error)
+        except Stop as stop:
+            raise typer.Exit(stop.status) from None
         except KeyboardInterrupt:
             raise typer.Exit(130) from None
+
+
+def _fail(message: str, error: Exception) -> NoReturn:
+    """Print an error and end with exit status 1."""
+    print_line(err, f"error: {message}", style="red")
+    raise typer.Exit(1) from error
 
 
 def _print_note(message: Warning | str, *_: Any, **__: Any) -> None:
@@ -106,10 +118,12 @@ def _print_note(message: Warning | str, *_: Any, **__: Any) -> None:
 
 def _print_mujoco_warning(message: str) -> None:
     """Print a warning of MuJoCo as a note, unless an error will tell of the divergence."""
-    if "Nan, Inf" not in message:
-        _print_note(message)
-
-
-def _interrupt(*_: Any) -> NoReturn:
-    """End as Ctrl-C does."""
-    raise KeyboardInterrupt
+    try:
+        if "Nan, Inf" not in message:
+            _print_note(message)
+    except Stop as stop:
+        # MuJoCo would end the process on the spot
+        raise_later(stop)
+    except OSError:
+        # nobody reads the standard error
+        pass

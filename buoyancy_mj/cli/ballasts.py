@@ -1,14 +1,19 @@
 """`ballast`: the least mass that brings a model to a draft and attitude."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import out, print_line
-from buoyancy_mj.cli.flags import ModelArgument, SelectionFlags, WaterOption, parse_still_water
+from buoyancy_mj.cli.console import out, print_line, quote_path
+from buoyancy_mj.cli.flags import (
+    ModelArgument,
+    SelectionFlags,
+    WaterOption,
+    check_file_name,
+    parse_still_water,
+)
 from buoyancy_mj.hulls.mjcf import write_mjcf
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import compile_spec
@@ -54,6 +59,7 @@ def ballast_(
 
     Instead of a draft, --reserve asks for a lift under water, and 0 for neutral buoyancy.
     """
+    check_file_name("--out", out_file)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     result = ballast(
@@ -68,11 +74,14 @@ def ballast_(
         where = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
         print_line(out, f"{item.label}: {item.mass:.4g} kg of {item.kind} at {where}")
     at = result.hydrostatics
+    carried = at.carried_mass
+    part = f", of which gravity compensation carries {carried:.4g} kg" if carried else ""
+    where = f"draft {at.draft:.4g} m" if draft is not None else "under water"
     print_line(
         out,
-        f"{result.mass:.4g} kg added, {at.mass:.4g} kg in all; draft {at.draft:.4g} m, "
+        f"{result.mass:.4g} kg added, {at.mass + at.carried_mass:.4g} kg in all{part}; {where}: "
         f"BG {at.BG:.4g} m, GM {at.GM:.4g} m, reserve {at.reserve:.4g} kg",
     )
     if out_file is not None:
         result.add_to(spec)
-        print_line(out, f"written: {shlex.quote(str(write_mjcf(spec, out_file)))}")
+        print_line(out, f"written: {quote_path(write_mjcf(spec, out_file))}")

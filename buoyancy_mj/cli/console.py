@@ -18,9 +18,9 @@ from rich.progress import (
     TimeElapsedColumn,
 )
 
-# names that users give may hold brackets, which are no markup, and ':b:', which is no picture
-out = Console(markup=False, emoji=False, highlight=False)
-err = Console(markup=False, emoji=False, highlight=False, stderr=True)
+# names that users give may hold brackets, which are no markup, and colons, which are no pictures
+out = Console(markup=False, highlight=False, emoji=False)
+err = Console(markup=False, highlight=False, emoji=False, stderr=True)
 
 
 def print_line(console: Console, text: str, style: str | None = None) -> None:
@@ -31,7 +31,14 @@ def print_line(console: Console, text: str, style: str | None = None) -> None:
 def viewer_command(recording: Path) -> str:
     """The command that opens a recording in the Rerun viewer of this environment."""
     viewer = Path(sys.executable).with_name("rerun")
-    return shlex.join([str(viewer) if viewer.exists() else "rerun", str(recording)])
+    name = quote_path(viewer) if viewer.exists() else "rerun"
+    return f"{name} {quote_path(recording)}"
+
+
+def quote_path(path: Path) -> str:
+    """A path as a shell takes it, and no command takes it for an option."""
+    text = str(path)
+    return shlex.quote(f"./{text}" if text.startswith("-") else text)
 
 
 @contextmanager

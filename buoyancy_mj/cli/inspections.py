@@ -1,7 +1,6 @@
 """`inspect`: a model before it is put to sea."""
 
 import json
-import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,16 +8,18 @@ import mujoco
 import typer
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import err, out, print_line, viewer_command
+from buoyancy_mj.cli.console import err, out, print_line, quote_path, viewer_command
 from buoyancy_mj.cli.flags import (
     Json,
     ModelArgument,
     SelectionFlags,
     WaterOption,
+    check_file_name,
     check_recording_name,
     parse_still_water,
 )
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.inspection import json_report, report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
@@ -26,6 +27,9 @@ from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import compile_spec
 from buoyancy_mj.scenes.vehicles import read_vehicle
+
+_REPORT_MARK = "<!-- written by buoyancy-mj inspect -->"
+"""The last line of a report."""
 
 
 @command("inspect")
@@ -55,6 +59,8 @@ def inspect_(
     The report also tells what is wrong with meshes. Exit status 1 says that a mesh is refused.
     """
     check_recording_name(record)
+    check_file_name("--plot", plot)
+    check_file_name("--repair", repair)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     compiled = compile_spec(spec, path)
@@ -72,7 +78,7 @@ def inspect_(
     # files; the standard error tells of them, since the standard output may be JSON
     if plot is not None:
         _draw_plots(inspection, plot)
-        print_line(err, f"plots and report: {shlex.quote(str(plot))}")
+        print_line(err, f"plots and report: {quote_path(plot)}")
     if record is not None:
         from buoyancy_mj.viz.inspection_recording import record_inspection  # needs Rerun
 
@@ -96,12 +102,15 @@ def _draw_plots(inspection: Inspection, folder: Path) -> None:
             "or leave it out"
         ) from error
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        page = folder / "report.md"
+        require_own(page, _REPORT_MARK)
         pictures = [(caption, file.name) for caption, file in draw_charts(inspection, folder)]
-        (folder / "report.md").write_text(report.to_markdown(inspection, pictures))
+        with replace_file(page) as part:
+            part.write_text(f"{report.to_markdown(inspection, pictures)}\n{_REPORT_MARK}\n")
     except OSError as error:
         raise ModelError(
-            f"cannot write into '{folder}': {error.strerror}; choose another folder (--plot)"
+            f"cannot write '{error.filename or folder}': {error.strerror}; choose another folder "
+            "(--plot)"
         ) from error
 
 
@@ -125,4 +134,4 @@ def _write_repaired(
         return
     folder = path.parent / f"{path.stem}_meshes"
     file = write_mjcf(embed_meshes(spec, model, mended, folder), path)
-    print_line(err, f"written: {shlex.quote(str(file))}")
+    print_line(err, f"written: {quote_path(file)}")

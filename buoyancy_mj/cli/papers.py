@@ -1,6 +1,5 @@
 """`paper`: the source paper, reproduced."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +8,7 @@ from rich.table import Table
 
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
+from buoyancy_mj.cli.flags import check_file_name
 
 
 @command()
@@ -24,6 +24,7 @@ def paper(
     ] = False,
 ) -> None:
     """Reproduce the source paper, and judge its claims."""
+    check_file_name("--out", out)
     from buoyancy_mj.paper import contents, reproduction  # need matplotlib, which 'run' does not
 
     total = len(set(only)) if only else len(contents.STUDIES)
@@ -37,4 +38,4 @@ def paper(
     for row in rows:
         table.add_row(*row)
     console.out.print(table)
-    console.print_line(console.out, f"tables and pictures: {shlex.quote(str(out))}")
+    console.print_line(console.out, f"tables and pictures: {console.quote_path(out)}")

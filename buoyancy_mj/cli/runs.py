@@ -5,7 +5,7 @@ import json
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from rich.progress import TextColumn, TimeRemainingColumn
@@ -21,11 +21,15 @@ from buoyancy_mj.cli.flags import (
     SelectionFlags,
     check_recording_name,
 )
-from buoyancy_mj.errors import SceneError
+from buoyancy_mj.errors import RecordingError, SceneError
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.frames import Frame, Summary
+from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.summary import Summary
+
+if TYPE_CHECKING:
+    from buoyancy_mj.viz.recording import Recording
 
 
 @command()
@@ -34,7 +38,7 @@ def run(
     flags: RunFlags,
     selection: SelectionFlags,
     record: Annotated[
-        Path | None, typer.Option(help="Record to this file instead of recordings/SCENE.rrd.")
+        Path | None, typer.Option(help="Record to this file instead of recordings/NAME.rrd.")
     ] = None,
     no_record: Annotated[
         bool, typer.Option("--no-record", help="Do not record to a file.")
@@ -42,6 +46,13 @@ def run(
     live: Annotated[
         bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
     ] = False,
+    through: Annotated[
+        str,
+        typer.Option(
+            help="Where the forces enter: qfrc_passive, or xfrc_applied, where sensors see them.",
+            metavar="ARRAY",
+        ),
+    ] = "qfrc_passive",
     as_json: Json = False,
 ) -> None:
     """Run a scene headless, record it and sum it up."""
@@ -55,8 +66,8 @@ def run(
     with err.status(
         "preparing (the first run after an installation compiles, which takes some seconds)"
     ):
-        simulation = Simulation(read_scene(path, settings))
-    target = None if no_record else record or Path("recordings") / f"{path.stem}.rrd"
+        simulation = Simulation(read_scene(path, settings), through=through)
+    target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
     recording = _run_to_end(simulation, target, live=live)
 
     # its summary
@@ -64,10 +75,7 @@ def run(
     if as_json:
         typer.echo(_to_json(summary, recording))
         return
-    table = Table(title=summary.scene, show_header=False, title_justify="left")
-    for name, value in summary.rows():
-        table.add_row(name, value)
-    out.print(table)
+    out.print(_to_table(summary))
     if recording is not None:
         print_line(out, f"open the recording: {viewer_command(recording)}")
 
@@ -105,15 +113,25 @@ def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> P
     recording = Recording(simulation, target, live=live)
     try:
         _run_frames(simulation, recording.add)
+        return recording.close(simulation.summary())
     except BaseException:
         # whatever ends the run, what was recorded stays
         if not recording.closed:
-            partial = recording.close(simulation.summary(), complete=False)
-            if partial is not None:
-                time = simulation.data.time
-                print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
+            _keep_partial(recording)
         raise
-    return recording.close(simulation.summary())
+
+
+def _keep_partial(recording: "Recording") -> None:
+    """Close a recording that broke off, and say where it is."""
+    simulation = recording.simulation
+    try:
+        partial = recording.close(simulation.summary(), complete=False)
+    except RecordingError as error:
+        print_line(err, f"note: {error}", style="yellow")
+    else:
+        if partial is not None:
+            time = simulation.data.time
+            print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
 
 
 def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
@@ -126,10 +144,32 @@ def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
             update(completed=frame.time)
 
 
+def _to_table(summary: Summary) -> Table:
+    """A summary as a table, with a column for each of several vehicles."""
+    several = len(summary.vehicles) > 1
+    table = Table(title=summary.scene, show_header=several, title_justify="left")
+    for name in ("", *summary.vehicles):
+        table.add_column(name)
+    for row in summary.rows():
+        table.add_row(*row)
+    if several:
+        table.caption = summary.caption
+        table.caption_justify = "left"
+    return table
+
+
 def _to_json(summary: Summary, recording: Path | None) -> str:
     """A summary and the path of its recording as JSON, which knows finite numbers only."""
-    values = {
-        name: None if isinstance(value, float) and not math.isfinite(value) else value
-        for name, value in dataclasses.asdict(summary).items()
-    }
-    return json.dumps(values | {"recording": str(recording) if recording else None}, indent=2)
+    values: dict[str, Any] = summary.values()
+    if len(summary.vehicles) > 1:
+        # a table for each vehicle, in place of names with dots
+        values = dataclasses.asdict(summary)
+    values |= {"recording": str(recording) if recording else None}
+    return json.dumps(_drop_infinite(values), indent=2)
+
+
+def _drop_infinite(value: Any) -> Any:
+    """The same values, but None for each number that is not finite."""
+    if isinstance(value, dict):
+        return {key: _drop_infinite(item) for key, item in value.items()}
+    return None if isinstance(value, float) and not math.isfinite(value) else value

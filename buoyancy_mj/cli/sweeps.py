@@ -1,6 +1,5 @@
 """`sweep`: one scene many times."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +8,7 @@ from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags
+from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags, check_file_name
 from buoyancy_mj.errors import SweepError
 from buoyancy_mj.scenes import catalog, ranges
 from buoyancy_mj.scenes.scene import read_scene
@@ -51,6 +50,7 @@ def sweep(
     The runs go side by side on all cores. A sweep that was interrupted goes on where it was.
     """
     # what varies, and what all runs share
+    check_file_name("--out", out)
     fields = [ranges.parse_range(text) for text in over]
     path = catalog.scene_path(scene)
     settings = (*flags.overrides(), *selection.overrides())
@@ -59,17 +59,21 @@ def sweep(
     plan = Sweep(path, settings, tuple(field.key for field in fields), tuple(values), out)
 
     # the runs
-    failed, reason = 0, ""
+    done, failures = 0, []
     columns = MofNCompleteColumn(), TimeRemainingColumn()
     with console.show_progress(path.stem, len(values), *columns) as update:
-        for row in plan.run(threads):
-            if row["status"] != "done":
-                failed += 1
-                reason = reason or row["reason"]
-            update(advance=1)
-    if failed == len(values):
-        raise SweepError(
-            f"all {failed} runs failed, one of them because {reason}; the rows are in "
-            f"{shlex.quote(str(out))}"
-        )
-    console.print_line(console.out, f"{len(values)} runs, {failed} failed: {shlex.quote(str(out))}")
+        try:
+            for row in plan.run(threads):
+                done += 1
+                failures += [row["reason"]] if row["status"] != "done" else []
+                update(advance=1)
+        except KeyboardInterrupt:
+            console.print_line(
+                console.err,
+                f"{done} of {len(values)} runs are done; the same command does the rest",
+            )
+            raise
+    told = f"{done} runs, {len(failures)} failed: {console.quote_path(out)}"
+    console.print_line(console.out, told)
+    if len(failures) == done:
+        raise SweepError(f"all {done} runs failed; the first: {failures[0]}")

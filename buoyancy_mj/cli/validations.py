@@ -1,6 +1,5 @@
 """`validate`: published experiments and closed forms beside what this package computes."""
 
-import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +8,7 @@ from rich.table import Table
 
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
+from buoyancy_mj.cli.flags import check_file_name
 
 
 @command()
@@ -27,6 +27,7 @@ def validate(
 
     These are experiments, benchmarks and closed forms.
     """
+    check_file_name("--out", out)
     from buoyancy_mj.validation import report  # needs matplotlib, which 'run' does not
 
     with console.show_count(len(set(only)) if only else len(report.CASES)) as begin:
@@ -42,4 +43,4 @@ def validate(
     verdicts = [row.holds for rows in results.values() for row in rows]
     console.print_line(console.out, f"{sum(verdicts)} of {len(verdicts)} rows hold")
     if not only:
-        console.print_line(console.out, f"page: {shlex.quote(str(out / 'validation.md'))}")
+        console.print_line(console.out, f"page: {console.quote_path(out / 'validation.md')}")

@@ -1,22 +1,38 @@
 """Python functions as C functions, and the errors that they raise there."""
 
 import collections
+import contextlib
 import ctypes
-import threading
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import mujoco
 
 _WORD = ctypes.c_int64
 _THREE_WORDS = ctypes.CFUNCTYPE(_WORD, _WORD, _WORD, _WORD)
-_RAISED = threading.local()
-_TEXTS: collections.deque[Any] = collections.deque(maxlen=256)
-"""The last texts that the engine was given to read."""
+_ROOM = 1000
+"""Most letters of a text that MuJoCo's error function has room for."""
+_KNOWN = 100
+"""So many letters at its beginning tell a text from others: the engine may cut its end off."""
+
+
+class _Raised(NamedTuple):
+    """An error, and the text of it that the engine was given to read."""
+
+    error: BaseException
+    text: str
+    memory: Any
+
+
+_RAISED: collections.deque[_Raised] = collections.deque(maxlen=256)
+"""The last errors of all threads, kept for the engine to read."""
 
 
 def wrap_python(function: Callable[[int, int, int], None]) -> Any:
     """A Python function of three words as a C function.
 
-    The C function returns 0, or the address of a text if the function raises.
+    The C function returns 0, or the address of a text if the function raises. The engine makes an
+    error of its own of that text, and `find_cause` finds what was raised.
     """
 
     def called(first: int, second: int, third: int) -> int:
@@ -25,25 +41,41 @@ def wrap_python(function: Callable[[int, int, int], None]) -> Any:
         except BaseException as error:
             # without its frames: what they hold must not be freed by the end of a thread
             error.__context__ = error.__cause__ = None
-            _RAISED.error = error.with_traceback(None)
-            # kept for the engine to read; a thread that is not Python's keeps nothing of its own
-            _TEXTS.append(encode_text(f"buoyancy_mj: {error}"))
-            return ctypes.addressof(_TEXTS[-1])
+            text = f"buoyancy_mj: {str(error) or type(error).__name__}"
+            memory = encode_text(text)
+            _RAISED.append(_Raised(error.with_traceback(None), text, memory))
+            return ctypes.addressof(memory)
         return 0
 
     return _THREE_WORDS(called)
 
 
-def pop_error() -> BaseException | None:
-    """What the last function of `wrap_python` that failed in this thread raised; then forgotten."""
-    error: BaseException | None = getattr(_RAISED, "error", None)
-    _RAISED.error = None
-    return error
+def find_cause(told: Exception | str) -> BaseException | None:
+    """What a function of `wrap_python` raised and the engine told; it may be Ctrl-C.
+
+    Args:
+        told: an error of the engine, or its message.
+
+    Returns:
+        What was raised; None for an error that is the engine's own.
+    """
+    message = str(told)
+    causes = (last.error for last in reversed(list(_RAISED)) if last.text[:_KNOWN] in message)
+    return next(causes, None)
+
+
+@contextlib.contextmanager
+def raise_causes() -> Iterator[None]:
+    """Raise what Python functions raised, Ctrl-C among it, in place of the engine's errors."""
+    try:
+        yield
+    except mujoco.FatalError as error:
+        raise find_cause(error) or error from None
 
 
 def encode_text(text: str) -> Any:
     """A text for MuJoCo's error function, which formats it and has room for a thousand letters."""
-    return ctypes.create_string_buffer(text.replace("%", "%%").encode()[:1000])
+    return ctypes.create_string_buffer(text.replace("%", "%%").encode()[:_ROOM])
 
 
 def address_of(function: Any) -> int:

@@ -1,4 +1,4 @@
-"""Checks of a model before water acts on it: flags of MuJoCo, and the depth under the waves."""
+"""Checks of a model before water acts on it: MuJoCo's flags, what has no volume, shallow waves."""
 
 import math
 import warnings
@@ -8,8 +8,12 @@ import mujoco
 import numpy as np
 
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.bodies import find_moving_bodies, group_floating_bodies
+from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.hulls.hull import Hull
-from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
+from buoyancy_mj.hulls.tethers import find_tether
+from buoyancy_mj.hulls.verdicts import SOLID_TYPES
 from buoyancy_mj.kernels.waves import DEPTH
 from buoyancy_mj.sea.water import Water
 
@@ -47,6 +51,85 @@ def check_sleep(model: mujoco.MjModel) -> None:
         )
 
 
+def check_applied(model: mujoco.MjModel, causes: Sequence[str]) -> None:
+    """Refuse water in `xfrc_applied` that a sensor of the model would misread.
+
+    The part of added mass that goes with accelerations stands in the mass matrix, and MuJoCo's
+    recursion for forces between bodies knows only their own inertia.
+
+    Args:
+        model: the model.
+        causes: names of the loads that act.
+
+    Raises:
+        ModelError: added mass acts, and a sensor measures the force or torque between bodies.
+    """
+    kinds = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE
+    sensors = np.flatnonzero(np.isin(model.sensor_type, [int(kind) for kind in kinds]))
+    if "added_mass" in causes and len(sensors):
+        name = model.sensor(sensors[0]).name or f"number {sensors[0]}"
+        raise ModelError(
+            f"the sensor '{name}' would not read the part of the added mass that goes with "
+            "accelerations, which stands in the mass matrix and not in xfrc_applied: leave out "
+            "the sensor, or the added mass (added_mass='none')"
+        )
+
+
+def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
+    """Refuse data of another model, whose arrays have other sizes or another meaning.
+
+    Copies of a model have its signature, and pickled ones have none.
+
+    Raises:
+        ModelError: the data are of another model.
+    """
+    if data.model is model:
+        return
+    signatures = {model.signature, data.signature} - {0}
+    pairs = {
+        "nq": (model.nq, data.qpos.shape[0]),
+        "nv": (model.nv, data.qvel.shape[0]),
+        "nbody": (model.nbody, data.xpos.shape[0]),
+        "ngeom": (model.ngeom, data.geom_xpos.shape[0]),
+        "nC": (model.nC, data.M.shape[0]),
+    }
+    other = [
+        f"{name} {theirs}, not {ours}" for name, (ours, theirs) in pairs.items() if ours != theirs
+    ]
+    if other or len(signatures) > 1:
+        raise ModelError(
+            f"these data are of another model than this water's "
+            f"({', '.join(other) or 'of the same sizes'}): make them of it, "
+            "mujoco.MjData(buoyancy.model), or make a Buoyancy of their model"
+        )
+
+
+def warn_of_no_volume(model: mujoco.MjModel) -> None:
+    """Name what moves with bodies and can displace no water: flexes, skins, distance fields."""
+    moving = find_moving_bodies(model)
+    things = [
+        f"{kind} '{mujoco.mj_id2name(model, object_type, i) or i}'"
+        for kind, object_type, count in (
+            ("flex", mujoco.mjtObj.mjOBJ_FLEX, model.nflex),
+            ("skin", mujoco.mjtObj.mjOBJ_SKIN, model.nskin),
+        )
+        for i in range(count)
+    ]
+    things += [
+        f"{geom_kind(model, geom)} '{geom_name(model, geom)}'"
+        for geom in range(model.ngeom)
+        if moving[model.geom_bodyid[geom]] and model.geom_type[geom] not in SOLID_TYPES
+    ]
+    if things:
+        displace = "displaces" if len(things) == 1 else "displace"
+        warnings.warn(
+            f"{', '.join(things)} {displace} no water: only geoms of the types mesh, box, sphere, "
+            "ellipsoid, capsule and cylinder do",
+            BuoyancyWarning,
+            stacklevel=3,
+        )
+
+
 def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
     """Warn of waves that break, and refuse waves in water in which a floating body is aground.
 
@@ -61,19 +144,19 @@ def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> N
     shallowest = float(np.min(water.rows[:, DEPTH], initial=np.inf))
     if math.isinf(shallowest):
         return
-    for body in {hull.body for hull in hulls}:
-        root = int(model.body_rootid[body])
-        if model.body_dofnum[root] != 6:
+    masses = find_weighing_masses(model)
+    for bodies in group_floating_bodies(model):
+        of_vessel = [hull for hull in hulls if hull.body in bodies]
+        if not of_vessel or find_tether(model, bodies) is not None:
             continue
-        of_vehicle = [hull for hull in hulls if model.body_rootid[hull.body] == root]
         volume = min(
-            float(model.body_subtreemass[root]) / water.density,
-            sum(hull.displaced_volume for hull in of_vehicle),
+            float(masses[bodies].sum()) / water.density,
+            sum(hull.displaced_volume for hull in of_vessel),
         )
-        least_draft = volume / (0.5 * sum(hull.mesh.area for hull in of_vehicle))
+        least_draft = volume / (0.5 * sum(hull.mesh.area for hull in of_vessel))
         if least_draft > shallowest:
             raise ModelError(
                 f"the waves run in water {shallowest:g} m deep, and body "
-                f"'{body_name(model, body)}' has a draft of at least {least_draft:.3g} m in any "
-                "attitude; make the waves' depth greater"
+                f"'{body_name(model, of_vessel[0].body)}' has a draft of at least "
+                f"{least_draft:.3g} m in any attitude; make the waves' depth greater"
             )

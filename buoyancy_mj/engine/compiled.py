@@ -2,8 +2,10 @@
 
 import ctypes
 import functools
+import os
 import threading
-from collections.abc import Iterator
+import weakref
+from collections.abc import Callable, Iterator
 
 import mujoco
 import numpy as np
@@ -13,17 +15,17 @@ from buoyancy_mj.engine import layout
 from buoyancy_mj.engine.c_functions import address_of, encode_text, wrap_python
 from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.errors import EngineError
-from buoyancy_mj.kernels.entries import passive
-from buoyancy_mj.kernels.entries.closures import Closure, compile_kernel
-from buoyancy_mj.kernels.entries.passive import Links, WaterTable, Workplace
+from buoyancy_mj.kernels.entries import loads, passive
+from buoyancy_mj.kernels.entries.closures import compile_kernel
+from buoyancy_mj.kernels.entries.tables import Links, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
-from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS
+from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS, sum_sizes
 from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
-from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.submersion.exact import PackedHulls
 
 THREADS = 64
-"""Threads that may act at once in one water; more take turns. What is not used costs no memory."""
+"""Threads that may act at once in one water; more take turns. What is not used costs no memory. A
+callback keeps records of as many data."""
 _WET, _IDS = (8 * WORDS * slot(Record, name) for name in ("wet", "ids"))
 """Bytes in the table of a record before the addresses of these arrays."""
 
@@ -37,13 +39,22 @@ def read_ids(record: int) -> NDArray[np.int64]:
 class CompiledWater:
     """The water of one `Buoyancy`, ready for compiled code."""
 
-    def __init__(self, model: mujoco.MjModel, load_model: LoadModel, lock: threading.RLock) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        load_model: LoadModel,
+        lock: threading.RLock,
+        measure: Callable[[], None],
+        handle: NDArray[np.int64],
+    ) -> None:
         """Gather it.
 
         Args:
             model: the model.
             load_model: what acts on it; hulls of `Exact` are submerged by compiled code.
             lock: held while hulls are submerged by Python code.
+            measure: called when the model's geoms have other sizes than those of `load_model`.
+            handle: a word (1,) that is set to the address of the water's table.
 
         Raises:
             EngineError: see `require_known_layout`.
@@ -51,46 +62,69 @@ class CompiledWater:
         require_known_layout()
         self._load_model, self._lock = load_model, lock
         self._sizes, self._geoms = (model.nbody, model.nC), model.ngeom
-        self._workers = [
-            _Worker(scratch, self._new_record()) for scratch in load_model.new_scratches(THREADS)
-        ]
+
+        # C functions of Python, and what the engine is told
         self._submerge = wrap_python(self._submerged)
+        self._measure = wrap_python(lambda *_: measure())
         self._text = encode_text(
             "gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>"
         )
-        self._offsets = np.array([layout.offset(path) for path in PATHS], np.int64)
+        self._sizes_text = encode_text(
+            "a copy of the model has geoms of other sizes than the model of the water: "
+            "add_water(spec) makes water that is measured for each"
+        )
         exact = isinstance(load_model.packed, PackedHulls)
-        links = [
-            model._address,
-            model.signature,
-            compile_kernel(passive.act).address,
-            0 if exact else address_of(self._submerge),
-            layout.symbol("mju_error"),
-            ctypes.addressof(self._text),
-            layout.symbol("mj_factorM"),
-            layout.symbol("mj_projectConstraint"),
+        causes = load_model.causes
+        links = Links(
+            model=model._address,
+            signature=model.signature,
+            sizes=sum_sizes(np.frombuffer(load_model.sizes, np.int64).copy().reshape(-1, 3)),
+            measure=address_of(self._measure),
+            sizes_text=ctypes.addressof(self._sizes_text),
+            act=compile_kernel(passive.act).address,
+            submerge=compile_kernel(loads.submerge).address
+            if exact
+            else address_of(self._submerge),
+            augment=compile_kernel(loads.augment).address if "added_mass" in causes else 0,
+            error=layout.symbol("mju_error"),
+            gravity_text=ctypes.addressof(self._text),
+            factor=layout.symbol("mj_factorM"),
+            project=layout.symbol("mj_projectConstraint"),
+        )
+
+        # where threads work, and what they leave
+        self._offsets = np.array([layout.offset(path) for path in PATHS], np.int64)
+        self._taken, self._busy = np.zeros((2, THREADS), np.int64)
+        self._places = [
+            Table(Workplace(scratch, taken))
+            for scratch, taken in zip(
+                load_model.new_scratches(THREADS), _addresses(self._taken), strict=True
+            )
         ]
+        self._last = [self._new_record() for _ in range(THREADS)]
+        self._turn = np.zeros(1, np.int64)
         self._table = Table(
             WaterTable(
                 load_model.arrays,
-                Links._make(np.array(links, np.uint64).astype(np.int64)),
-                self._offsets.ctypes.data,
-                np.array([worker.table.address for worker in self._workers]),
+                Links._make(np.array([int(n) % 2**64 for n in links], np.uint64).view(np.int64)),
+                acting=np.array(
+                    [compile_kernel(loads.make_entry(load)).address for load in load_model.acting]
+                ),
+                offsets=self._offsets.ctypes.data,
+                pool=np.array([place.address for place in self._places]),
+                records=np.array([record.address for record in self._last]),
+                datas=np.zeros(THREADS, np.int64),
+                busy=_addresses(self._busy),
+                turn=self._turn.ctypes.data,
             )
         )
         self.address = self._table.address
         """Of the table of the water."""
+        self._handle = handle
+        self._handle[0] = self.address
         self._records: list[Table[Record]] = []
         self._room = 16
-
-    def callback(self, previous: int = 0, *, copies: bool = False) -> Closure:
-        """A C function void(const mjModel*, mjData*) that MuJoCo may call from any thread.
-
-        Args:
-            previous: such a function that is called first.
-            copies: act on copies of the model too, known by MuJoCo's compilation signature.
-        """
-        return Closure(passive.callback, self.address, previous, int(copies))
+        _WATERS.add(self)
 
     def record(self, model: int) -> Table[Record]:
         """A record for one data of the model at an address, in use while `ids[ALIVE]` is 1."""
@@ -110,10 +144,9 @@ class CompiledWater:
     def last_record(self, data: int) -> Record | None:
         """The record of the last pass over the data at an address; None if there is none.
 
-        It is gone too when many others came after it.
+        It is gone too when a callback acted on `THREADS` others since.
         """
-        records = [record for record in self._all_records() if record.ids[DATA] == data]
-        return max(records, key=lambda record: float(record.instant[0]), default=None)
+        return next((record for record in self._all_records() if record.ids[DATA] == data), None)
 
     def forget(self, data: int) -> None:
         """Forget that: something else acts on the data."""
@@ -125,7 +158,7 @@ class CompiledWater:
         return Table(self._load_model.record(*self._sizes))
 
     def _all_records(self) -> Iterator[Record]:
-        yield from (worker.record.arrays for worker in self._workers)
+        yield from (record.arrays for record in self._last)
         yield from (record.arrays for record in self._records if record.arrays.ids[ALIVE])
 
     def _submerged(self, _: int, data: int, record: int) -> None:
@@ -150,13 +183,23 @@ class CompiledWater:
             np.ctypeslib.as_array(target, wet.shape)[:] = wet
 
 
-class _Worker:
-    """A workplace for one thread."""
+_WATERS: weakref.WeakSet[CompiledWater] = weakref.WeakSet()
+"""All that there are."""
 
-    def __init__(self, scratch: Scratch, record: Table[Record]) -> None:
-        self.record = record
-        self._taken = np.zeros(1, np.int64)
-        self.table = Table(Workplace(scratch, self._taken.ctypes.data, record.address))
+
+def _vacate_all() -> None:
+    """Take back what threads were working at that a forked child does not have."""
+    for water in list(_WATERS):
+        water._taken[:] = water._busy[:] = 0
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_vacate_all)
+
+
+def _addresses(words: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The address of each word of an array."""
+    return words.ctypes.data + 8 * np.arange(len(words))
 
 
 @functools.cache

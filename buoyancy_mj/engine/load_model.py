@@ -2,20 +2,25 @@
 
 import dataclasses
 import functools
+from collections.abc import Callable, Sequence
 
+import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
-from buoyancy_mj.kernels import clip
+from buoyancy_mj.hulls.geoms import find_hulls
+from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import conform, empty
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.hulls import Hulls
-from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.kernels.passes import IDS, Causes, LoadArrays, Record
 from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
-from buoyancy_mj.sea.water import Water
+from buoyancy_mj.loads.added_mass import resolve_added_mass
+from buoyancy_mj.loads.damping_arrays import resolve_damping
+from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays
+from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.methods import Packed
 
 CAUSES = Causes._fields
@@ -24,8 +29,12 @@ CAUSES = Causes._fields
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class LoadModel:
-    """What the water does to the bodies of one model."""
+    """What the water does to the bodies of one model, whose geoms have the sizes of now."""
 
+    hulls: tuple[Hull, ...]
+    """The hulls, in the order of the model's geoms."""
+    sizes: bytes
+    """The sizes of the model's geoms, from which the hulls were measured."""
     packed: Packed
     """The hulls, ready to be submerged."""
     arrays: LoadArrays
@@ -42,6 +51,18 @@ class LoadModel:
             "added_mass": len(self.arrays.added_mass.bodies) > 0,
         }
         return tuple(cause for cause in CAUSES if acts.get(cause, True))
+
+    @functools.cached_property
+    def acting(self) -> tuple[Callable[..., None], ...]:
+        """Those of `kernels.passes.LOADS` that act."""
+        acts = {
+            passes.add_wave_pressure: self.has_wave_pressure,
+            passes.add_drag: "drag" in self.causes,
+            passes.add_panel_drag: len(self.arrays.damping.panels) > 0,
+            passes.add_radiation: "radiation" in self.causes,
+            passes.add_reaction: "added_mass" in self.causes,
+        }
+        return tuple(load for load in passes.LOADS if acts.get(load, True))
 
     @functools.cached_property
     def has_wave_pressure(self) -> bool:
@@ -82,29 +103,41 @@ class LoadModel:
 
 
 def build_load_model(
-    water: Water,
-    packed: Packed,
-    owners: NDArray[np.int64],
-    pressure: PressureModel,
-    damping: DampingArrays | None,
-    added_mass: AddedMass,
+    model: mujoco.MjModel, settings: Settings, bodies: Sequence[int] | None
 ) -> LoadModel:
-    """A `LoadModel`.
+    """Measure the hulls of a model as its geoms are now, and find what acts on them.
 
     Args:
-        water: the sea.
-        packed: the hulls.
-        owners: the body of each hull (h,).
-        pressure: the model of the pressure in waves.
-        damping: drag of the bodies; None for none.
-        added_mass: added mass of the bodies that have one.
+        model: the model.
+        settings: the water, and how it acts.
+        bodies: indices of the bodies whose geoms may displace; None for all.
+
+    Raises:
+        ModelError, MeshError, MethodError: see `Buoyancy`.
     """
+    # the hulls
+    water, damping = settings.water, settings.damping
+    sizes = model.geom_size.tobytes()
+    hulls = find_hulls(model, settings.selection, bodies)
+    owners = np.array([hull.body for hull in hulls])
+    hull_set = HullSet(
+        [hull.mesh for hull in hulls],
+        frames=[hull.geom for hull in hulls],
+        bodies=owners,
+        turns=[hull.body_from_geom for hull in hulls],
+        fills=[hull.fill for hull in hulls],
+    )
+    packed = settings.method.pack(hull_set, water)
+
+    # what acts on them
     arrays = LoadArrays(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
         bodies=np.unique(owners),
-        sea=sea_arrays(water, pressure),
-        damping=empty(DampingArrays) if damping is None else damping,
-        added_mass=added_mass,
+        sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
+        damping=resolve_damping(damping, model, hulls, water.density)
+        if damping
+        else empty(DampingArrays),
+        added_mass=resolve_added_mass(model, hulls, water.density, settings.added_mass),
     )
-    return LoadModel(packed, conform(arrays))
+    return LoadModel(hulls, sizes, packed, conform(arrays))

@@ -7,17 +7,19 @@ import mujoco
 
 from buoyancy_mj.engine import layout
 from buoyancy_mj.errors import ModelError
-from buoyancy_mj.settings.config import KEYS
+from buoyancy_mj.settings.config import INSTANCE, KEYS
 
 MODEL_ARRAYS = (
     "geom_type", "geom_contype", "geom_conaffinity", "geom_bodyid", "geom_dataid", "geom_group",
     "geom_size", "geom_pos", "geom_quat",
     "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
     "body_parentid", "body_weldid", "body_pos", "body_quat", "body_plugin",
+    "body_dofnum", "jnt_type", "jnt_bodyid", "M_rownnz",
+    "eq_type", "eq_objtype", "eq_obj1id", "eq_obj2id", "eq_active0", "site_bodyid",
     "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
-    "names", "plugin",
+    "names", "plugin", "plugin_attr",
 )  # fmt: skip
-"""Arrays of mjModel from which the hulls and their drag are made.
+"""Arrays of mjModel from which the hulls, their loads and the room for them are made.
 
 Models that agree in them share a water. Masses, the timestep and all else that matters are read
 anew in each pass."""
@@ -36,8 +38,12 @@ _WORD = ctypes.c_int64
 
 def read_config(model: int, instance: int) -> dict[str, str]:
     """The configuration of a plugin instance of the model at an address: texts by key."""
-    read = layout.function("mj_getPluginConfig", ctypes.c_char_p, _WORD, _INT, ctypes.c_char_p)
-    return {key: (read(model, instance, key.encode()) or b"").decode() for key in KEYS}
+    return {key: _read_key(model, instance, key) for key in KEYS}
+
+
+def read_first_name(model: int, instance: int) -> str:
+    """The name of a plugin instance where `add_water` put it; '' if somebody else did."""
+    return _read_key(model, instance, INSTANCE)
 
 
 def fingerprint_model(model: int, instance: int) -> bytes:
@@ -76,3 +82,9 @@ def copy_model(model: int) -> mujoco.MjModel:
     save(whole, 0, ctypes.addressof(buffer), len(buffer))
     layout.function("mj_deleteModel", None, _WORD)(whole)
     return mujoco.MjModel.from_binary_path("model.mjb", {"model.mjb": buffer.raw})
+
+
+def _read_key(model: int, instance: int, key: str) -> str:
+    """The text of a key of a plugin instance; '' if it has none."""
+    read = layout.function("mj_getPluginConfig", ctypes.c_char_p, _WORD, _INT, ctypes.c_char_p)
+    return (read(model, instance, key.encode()) or b"").decode()

@@ -9,9 +9,11 @@
     </extension>
 
 A body joins the instance by `<plugin instance="sea"/>`; where none does, all bodies that move are
-in it. The keys are those of `settings.config.KEYS`. MuJoCo calls only compiled functions, from any
-thread; Python is asked once for each mjData, when it is made, and when data are stepped with
-another model.
+in it. Where a model is attached to another, MuJoCo takes along only instances that a body joined;
+so `add_water` lets the bodies join. The keys are those of `settings.config.KEYS`.
+
+MuJoCo calls only compiled functions, from any thread; Python is asked once for each mjData, when it
+is made, and when data are stepped with another model.
 """
 
 import warnings
@@ -21,11 +23,12 @@ import mujoco
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.engine.instances import PLUGIN, find_instance
+from buoyancy_mj.engine.pickles import pickle_with_water
 from buoyancy_mj.engine.registration import register
 from buoyancy_mj.engine.waters import find_water, remember_settings
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.settings.config import write_plugin_config
+from buoyancy_mj.settings.config import INSTANCE, write_plugin_config
 from buoyancy_mj.settings.settings import Options, Settings, combine_settings
 
 
@@ -38,11 +41,14 @@ def add_water(
 ) -> None:
     """Put water into a model, so that it floats wherever MuJoCo steps it.
 
-    The model compiled from `spec` has the water, and so has the MJCF saved from it.
+    The model compiled from `spec` has the water, and so has the MJCF saved from it. Where `spec` is
+    attached to another model, its bodies keep their water, and the others stay without.
 
     Args:
-        spec: the model. All its bodies that move are in the water, but those that joined another
-            instance.
+        spec: the model, with its bodies: those that it gets later are in this water too, but do not
+            take it along when they alone are attached elsewhere. All its bodies that move are in
+            the water, but those that joined another instance; or those alone that joined this one
+            before.
         water: the sea, fresh and still at z = 0 if None; or `Settings`, which hold it and all
             options.
         instance: name of the plugin's instance in the model.
@@ -70,7 +76,23 @@ def add_water(
     remember_settings(config, settings)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
-    plugin.config = config
+    if any(body.plugin.active and body.plugin.name == instance for body in spec.bodies):
+        plugin.config = config
+        return
+
+    # all bodies, also where the model is attached to another
+    plugin.config = config | {INSTANCE: instance}
+    _join_bodies(spec, instance)
+
+
+def _join_bodies(spec: mujoco.MjSpec, instance: str) -> None:
+    """Let all bodies with joints join an instance, or those of the world if none has any."""
+    bodies = [body for body in spec.bodies if body.joints]
+    for body in bodies or [body for body in spec.worldbody.bodies if not body.mocap]:
+        if not body.plugin.active:
+            body.plugin.active = True
+            body.plugin.plugin_name = PLUGIN
+            body.plugin.name = instance
 
 
 def water_in(model: mujoco.MjModel, instance: str | None = None) -> Buoyancy:
@@ -88,6 +110,7 @@ def water_in(model: mujoco.MjModel, instance: str | None = None) -> Buoyancy:
 
 try:
     register()
+    pickle_with_water()
 except EngineError as _error:
     warnings.warn(
         f"models cannot bring their own water here: {_error}", BuoyancyWarning, stacklevel=2

@@ -14,7 +14,7 @@ from buoyancy_mj.kernels.entries import plugin_hooks
 from buoyancy_mj.kernels.entries.closures import Closure
 from buoyancy_mj.kernels.entries.views import Table
 from buoyancy_mj.kernels.passes import ALIVE, MODEL, WATER
-from buoyancy_mj.settings.config import KEYS
+from buoyancy_mj.settings.config import INSTANCE, KEYS
 
 _HOOKS = (
     "nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance", "visualize",
@@ -48,9 +48,10 @@ def _resolve(model: int, data: int, instance: int) -> None:
         if record and compiled.read_ids(record)[WATER] == water.address:
             compiled.read_ids(record)[MODEL] = model
             return
+        # in this order, for Ctrl-C may come between
+        _WORD.from_address(slot).value = water.record(model).address
         if record:
             compiled.read_ids(record)[ALIVE] = 0
-        _WORD.from_address(slot).value = water.record(model).address
 
 
 class _Plugin(ctypes.Structure):
@@ -90,10 +91,11 @@ class _Engine:
             )
             for hook in plugin_hooks.HOOKS
         }
-        self._attributes = (ctypes.c_char_p * len(KEYS))(*(key.encode() for key in KEYS))
+        keys = [key.encode() for key in (*KEYS, INSTANCE)]
+        self._attributes = (ctypes.c_char_p * len(keys))(*keys)
         self._plugin = _Plugin(
             name=PLUGIN.encode(),
-            nattribute=len(KEYS),
+            nattribute=len(keys),
             attributes=self._attributes,
             capabilityflags=int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
             needstage=int(mujoco.mjtStage.mjSTAGE_VEL),

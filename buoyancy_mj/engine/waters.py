@@ -1,6 +1,8 @@
 """Waters of models that bring their own; models that agree in what it is made of share one."""
 
+import collections
 import contextlib
+import dataclasses
 import threading
 from collections.abc import Iterator, Mapping
 
@@ -8,9 +10,16 @@ import mujoco
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.engine.checks import skips_passive
-from buoyancy_mj.engine.instances import PLUGIN, find_instance_bodies, instance_name
+from buoyancy_mj.engine.forks import make_lock
+from buoyancy_mj.engine.instances import (
+    PLUGIN,
+    find_instance_bodies,
+    find_instance_scope,
+    instance_name,
+)
 from buoyancy_mj.engine.model_memory import copy_model, fingerprint_model, read_config
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.hulls.selection import rename_patterns
 from buoyancy_mj.settings.config import parse_plugin_config
 from buoyancy_mj.settings.settings import Settings
 
@@ -19,9 +28,9 @@ MOST_UNUSED = 32
 MOST_SETTINGS = 1024
 """Settings that are remembered; older ones are read from their texts."""
 
-LOCK = threading.RLock()
+LOCK = make_lock()
 """Held while a water is looked up, made or attached to data: MuJoCo may ask from any thread."""
-_waters: dict[bytes, Buoyancy] = {}
+_waters: collections.OrderedDict[bytes, Buoyancy] = collections.OrderedDict()
 """Waters by the fingerprint of their models, the last used last."""
 _settings: dict[str, Settings] = {}
 """Settings that this process has put into models, by their texts, the newest last."""
@@ -48,7 +57,7 @@ def find_water(model: int, instance: int) -> Buoyancy:
             _drop_unused()
             with _making_water():
                 _waters[key] = _make_water(copy_model(model), instance)
-        _waters[key] = _waters.pop(key)
+        _waters.move_to_end(key)
         return _waters[key]
 
 
@@ -78,6 +87,11 @@ def _make_water(model: mujoco.MjModel, instance: int) -> Buoyancy:
     if settings is None:
         name = instance_name(model, instance) or instance
         settings = parse_plugin_config(texts, f"plugin '{PLUGIN}', instance '{name}'")
+
+    # where it was attached, its patterns are those of its file
+    scope = find_instance_scope(model, instance)
+    selection = rename_patterns(settings.selection, scope.prefix, scope.suffix)
+    settings = dataclasses.replace(settings, selection=selection)
 
     # nobody installs this one as a control callback
     model.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)

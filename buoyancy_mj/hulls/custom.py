@@ -1,6 +1,8 @@
 """What a model's `<custom>` gives: texts by name, and numerics 'QUANTITY:BODY' by body."""
 
+import re
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import mujoco
 import numpy as np
@@ -8,18 +10,75 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.replicas import find_originals
+
+QUANTITIES = ("added_mass", "linear_damping", "quadratic_damping", "radiation_damping")
+"""Quantities of the numerics 'QUANTITY:BODY' by which a file states what it knows of a body."""
 
 
-def read_texts(model: mujoco.MjModel, name: str) -> list[str]:
-    """The texts of a name; several where vehicles were attached under a prefix, 'PREFIX/NAME'."""
-    texts = []
+class BodyNumeric(NamedTuple):
+    """A numeric 'QUANTITY:BODY'."""
+
+    name: str
+    """Its name in the model, with what an attachment put around it."""
+    quantity: str
+    """One of `QUANTITIES`."""
+    body_name: str
+    """The name of its body in the model."""
+    bodies: tuple[int, ...]
+    """Its body, or all copies that `<replicate>` made of it; none if there is no such body."""
+    numbers: NDArray[np.float64]
+    """Its numbers."""
+
+
+def read_all_texts(model: mujoco.MjModel) -> dict[str, str]:
+    """All texts of `<custom>` by name."""
+    texts = {}
     for i in range(model.ntext):
-        full_name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_TEXT, i) or ""
-        if full_name.rsplit("/", 1)[-1] == name:
-            start = model.text_adr[i]
-            data = bytes(model.text_data[start : start + model.text_size[i]])
-            texts.append(data.split(b"\0")[0].decode())
+        start = model.text_adr[i]
+        data = bytes(model.text_data[start : start + model.text_size[i]])
+        name = _name(model, mujoco.mjtObj.mjOBJ_TEXT, i)
+        texts[name] = data.split(b"\0")[0].decode(errors="replace")
     return texts
+
+
+def read_all_numerics(model: mujoco.MjModel) -> dict[str, NDArray[np.float64]]:
+    """All numerics of `<custom>` by name."""
+    numerics = {}
+    for i in range(model.nnumeric):
+        start = model.numeric_adr[i]
+        numbers = np.array(model.numeric_data[start : start + model.numeric_size[i]])
+        numerics[_name(model, mujoco.mjtObj.mjOBJ_NUMERIC, i)] = numbers
+    return numerics
+
+
+def read_tuple_names(model: mujoco.MjModel) -> list[str]:
+    """The names of all tuples of `<custom>`."""
+    return [_name(model, mujoco.mjtObj.mjOBJ_TUPLE, i) for i in range(model.ntuple)]
+
+
+def split_quantity(name: str) -> tuple[str, str] | None:
+    """The quantity of a name 'QUANTITY:BODY', and the name of its body; None of another name.
+
+    What an attachment put around the name stands around that of the body too:
+    'rov1_added_mass:hull' is given for the body 'rov1_hull'.
+    """
+    match = re.search(rf"({'|'.join(QUANTITIES)}):", name)
+    return (match[1], name[: match.start()] + name[match.end() :]) if match else None
+
+
+def read_body_numerics(model: mujoco.MjModel) -> list[BodyNumeric]:
+    """All numerics 'QUANTITY:BODY' of a model, whether there is such a body or not."""
+    names = {body_name(model, body): body for body in range(model.nbody)}
+    copies = find_originals(names)
+    body_numerics = []
+    for name, numbers in read_all_numerics(model).items():
+        if split := split_quantity(name):
+            quantity, body = split
+            copied = (i for full, i in names.items() if body in copies.get(full, ()))
+            bodies = (names[body],) if body in names else tuple(copied)
+            body_numerics.append(BodyNumeric(name, quantity, body, bodies, numbers))
+    return body_numerics
 
 
 def read_numerics(
@@ -27,16 +86,13 @@ def read_numerics(
 ) -> dict[int, NDArray[np.float64]]:
     """The numbers of a quantity, such as 'added_mass', by the index of the body.
 
-    Raises:
-        ModelError: the body of a numeric is none of `bodies`.
+    `hulls.words.check_words` judges those that are given for none of `bodies`; here they are left
+    out. What is given for a body by its own name wins over what is given for it as a copy.
     """
-    numbers = {}
-    for i in range(model.nnumeric):
-        name = mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_NUMERIC, i) or ""
-        if name.startswith(f"{quantity}:"):
-            body = find_body(model, name.removeprefix(f"{quantity}:"), bodies, quantity)
-            start = model.numeric_adr[i]
-            numbers[body] = np.array(model.numeric_data[start : start + model.numeric_size[i]])
+    numbers: dict[int, NDArray[np.float64]] = {}
+    for numeric in sorted(read_body_numerics(model), key=lambda one: -len(one.bodies)):
+        if numeric.quantity == quantity:
+            numbers |= {body: numeric.numbers for body in numeric.bodies if body in bodies}
     return numbers
 
 
@@ -50,6 +106,11 @@ def find_body(model: mujoco.MjModel, name: str, bodies: Sequence[int], quantity:
     if name not in names:
         raise ModelError(
             f"{quantity.replace('_', ' ')} is given for body '{name}', "
-            f"which has no hull of its own; {choices(name, names)}"
+            f"which has no hull of its own; {choices(str(name), names)}"
         )
     return names[name]
+
+
+def _name(model: mujoco.MjModel, kind: mujoco.mjtObj, index: int) -> str:
+    """The name of a custom element."""
+    return mujoco.mj_id2name(model, kind, index) or ""

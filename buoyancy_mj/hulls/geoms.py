@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning, MeshError
+from buoyancy_mj.hulls.convex_choice import describe_convex_choice
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import geom_name
 from buoyancy_mj.hulls.overlaps import join_overlapping
@@ -17,6 +18,7 @@ from buoyancy_mj.hulls.patterns import parse_fills, parse_shapes
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.hulls.verdicts import SOLID_TYPES, judge_geoms
 from buoyancy_mj.meshes import shapes
+from buoyancy_mj.meshes.convex import convex_hull
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.repair import diagnose
@@ -47,7 +49,8 @@ def find_hulls(
         bodies: indices of the bodies whose geoms may displace; None for all.
 
     Raises:
-        ModelError: no geom is left, or a pattern matches none.
+        ModelError: no geom is left, or a pattern or anything else in `<custom>` finds nothing to
+            hold for.
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
     verdicts = judge_geoms(model, selection, bodies)
@@ -79,18 +82,36 @@ def build_hulls(
     meshes: dict[tuple[Any, ...], TriMesh] = {}
     hulls = []
     for geom in geoms:
-        mesh = _build_mesh(model, geom, hull_shapes.get(geom) == "convex", meshes)
+        mesh = _build_mesh(model, geom, geoms, hull_shapes, meshes)
         hulls.append(_build_hull(model, data, geom, mesh, fills.get(geom, 1.0)))
     return join_overlapping(hulls)
 
 
-def diagnose_geom(model: mujoco.MjModel, geom: int) -> Diagnosis | None:
-    """Diagnose the mesh of a geom, once for each mesh; None for a geom of another type."""
+def diagnose_geom(
+    model: mujoco.MjModel, geom: int, geoms: Sequence[int], hull_shapes: Mapping[int, str]
+) -> Diagnosis | None:
+    """Diagnose the mesh of a geom, once for each mesh; None for a geom of another type.
+
+    Args:
+        model: any model.
+        geom: index of the geom.
+        geoms: indices of all geoms that displace water.
+        hull_shapes: 'convex' by the index of each of them that displaces as its convex hull.
+    """
     if model.geom_type[geom] != _MESH:
         return None
     arrays = read_geom_mesh(model, geom)
     assert arrays is not None
-    return _diagnose(*(values.tobytes() for values in arrays), describe_mesh(model, geom))
+
+    # the geoms that a convex hull would help, beside those that have theirs already
+    sharing = find_sharing(model, geom, geoms)
+    convex = {g for g, shape in hull_shapes.items() if shape == "convex"}
+    choice = describe_convex_choice(model, convex | set(sharing), geoms)
+    return _diagnose(
+        *(values.tobytes() for values in arrays),
+        describe_mesh(model, geom, geoms),
+        f"take its convex hull ({choice}), or leave the geom out (--geoms)",
+    )
 
 
 def read_geom_mesh(
@@ -113,12 +134,18 @@ def read_geom_mesh(
     return primitive.vertices, primitive.faces
 
 
-def describe_mesh(model: mujoco.MjModel, geom: int) -> str:
-    """What messages call the mesh of a geom: its asset, and the geoms that share it."""
+def find_sharing(model: mujoco.MjModel, geom: int, geoms: Sequence[int]) -> list[int]:
+    """Those of `geoms` that have the mesh of a geom."""
+    of_mesh = (model.geom_type == _MESH) & (model.geom_dataid == model.geom_dataid[geom])
+    return [g for g in geoms if of_mesh[g]]
+
+
+def describe_mesh(model: mujoco.MjModel, geom: int, geoms: Sequence[int]) -> str:
+    """What messages call the mesh of a geom: its asset, and those of `geoms` that share it."""
     asset = int(model.geom_dataid[geom])
-    sharing = np.flatnonzero((model.geom_type == _MESH) & (model.geom_dataid == asset))
+    sharing = find_sharing(model, geom, geoms)
     others = f" and {len(sharing) - 1} more" if len(sharing) > 1 else ""
-    return f"mesh '{model.mesh(asset).name}' of geom '{geom_name(model, int(sharing[0]))}'{others}"
+    return f"mesh '{model.mesh(asset).name}' of geom '{geom_name(model, sharing[0])}'{others}"
 
 
 def _build_hull(
@@ -140,10 +167,15 @@ def _build_hull(
 
 
 def _build_mesh(
-    model: mujoco.MjModel, geom: int, convex: bool, meshes: dict[tuple[Any, ...], TriMesh]
+    model: mujoco.MjModel,
+    geom: int,
+    geoms: Sequence[int],
+    hull_shapes: Mapping[int, str],
+    meshes: dict[tuple[Any, ...], TriMesh],
 ) -> TriMesh:
     """The mesh of a geom; `meshes` keeps one for all geoms of the same asset, or type and size."""
     is_mesh = model.geom_type[geom] == _MESH
+    convex = hull_shapes.get(geom) == "convex"
     shape = [model.geom_dataid[geom]] if is_mesh else model.geom_size[geom]
     key = (convex, int(model.geom_type[geom]), *map(float, shape))
     if key not in meshes:
@@ -152,15 +184,14 @@ def _build_mesh(
         elif convex:
             arrays = read_geom_mesh(model, geom)
             assert arrays is not None
-            meshes[key] = shapes.convex_hull(arrays[0], describe_mesh(model, geom))
+            meshes[key] = convex_hull(arrays[0], describe_mesh(model, geom, geoms))
         else:
-            meshes[key] = _repair_mesh(model, geom)
+            meshes[key] = _repair_mesh(diagnose_geom(model, geom, geoms, hull_shapes))
     return meshes[key]
 
 
-def _repair_mesh(model: mujoco.MjModel, geom: int) -> TriMesh:
-    """The repaired mesh of a geom, with a warning for each repair."""
-    diagnosis = diagnose_geom(model, geom)
+def _repair_mesh(diagnosis: Diagnosis | None) -> TriMesh:
+    """The repaired mesh of a diagnosis, with a warning for each repair."""
     assert diagnosis is not None
     if diagnosis.mesh is None:
         raise MeshError(diagnosis.refusal)
@@ -170,10 +201,11 @@ def _repair_mesh(model: mujoco.MjModel, geom: int) -> TriMesh:
 
 
 @functools.lru_cache(maxsize=64)
-def _diagnose(vertices: bytes, faces: bytes, name: str) -> Diagnosis:
+def _diagnose(vertices: bytes, faces: bytes, name: str, mend: str) -> Diagnosis:
     """Diagnose a mesh once: each run of a sweep reads the same vehicle again."""
     return diagnose(
         np.frombuffer(vertices).reshape(-1, 3),
         np.frombuffer(faces, np.int64).reshape(-1, 3),
         name=name,
+        mend=mend,
     )

@@ -12,7 +12,11 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.meshes.mesh import TriMesh
+
+_OBJ_MARK = "https://github.com/mikedh/trimesh"
+"""What trimesh writes at the head of a Wavefront file."""
 
 
 def write_mjcf(spec: mujoco.MjSpec, path: Path) -> Path:
@@ -35,8 +39,8 @@ def write_mjcf(spec: mujoco.MjSpec, path: Path) -> Path:
             compiler.set(name, os.path.relpath(model_folder / directory, folder))
 
         ElementTree.indent(root)
-        folder.mkdir(parents=True, exist_ok=True)
-        path.write_text(ElementTree.tostring(root, encoding="unicode") + "\n")
+        with replace_file(path) as part:
+            part.write_text(ElementTree.tostring(root, encoding="unicode") + "\n")
     except (OSError, ValueError, mujoco.FatalError) as error:
         raise ModelError(
             f"cannot write '{path}': {' '.join(str(error).split())}; choose another place"
@@ -78,8 +82,9 @@ def _write_obj(vertices: NDArray[np.float64], faces: NDArray[np.int64], path: Pa
     solid = trimesh.Trimesh(vertices, faces, process=False)
     text = trimesh.exchange.obj.export_obj(solid, include_normals=False, digits=9)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(text)
+        require_own(path, _OBJ_MARK)
+        with replace_file(path) as part:
+            part.write_text(text)
     except OSError as error:
         raise ModelError(
             f"cannot write '{path}': {error.strerror}; choose another place"

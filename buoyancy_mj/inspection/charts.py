@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.inspection.inspection import Inspection
 from buoyancy_mj.inspection.vessels import VesselInspection
 from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
@@ -17,17 +18,30 @@ from buoyancy_mj.statics.hydrostatics import Hydrostatics
 from buoyancy_mj.statics.righting import RightingArm
 from buoyancy_mj.statics.vessel import Vessel
 
+SOFTWARE = "buoyancy_mj"
+"""What the charts say of the software that made them."""
+
 
 def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
-    """Draw charts of all vessels as PNG files in a folder; return each caption and its file."""
+    """Draw charts of vessels as PNG files in a folder; return each caption and its file.
+
+    A vessel with a hull whose mesh is refused has none.
+
+    Raises:
+        OSError: a file cannot be written, or there is one that was not made here.
+    """
     files = []
     with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
         for vessel in inspection.vessels:
+            if vessel.refused:
+                continue
             name = vessel.total.body
             stem = name.replace("/", "-").replace(" ", "_")
             for kind, caption, figure in _draw_figures(vessel):
                 path = folder / f"{stem}_{kind}.png"
-                figure.savefig(path, dpi=150)
+                require_own(path, SOFTWARE)
+                with replace_file(path) as part:
+                    figure.savefig(part, dpi=150, metadata={"Software": SOFTWARE})
                 files.append((f"{caption} of '{name}'", path))
     return files
 

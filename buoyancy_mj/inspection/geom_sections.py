@@ -31,7 +31,9 @@ def describe_geoms(title: str, geoms: Sequence[GeomInspection]) -> Section:
 def _describe_geom(geom: GeomInspection) -> tuple[str, ...]:
     """Cells of a geom, one for each name of `_HEADER`."""
     shape = "convex hull" if geom.convex else geom.kind
-    verdict = "yes" if geom.mesh is not None else "refused" if geom.displaces else "no"
+    verdict = f"{'yes' if geom.displaces else 'no'}: {geom.reason}"
+    if geom.displaces and geom.mesh is None:
+        verdict = "refused, see the problems"
     size = ("", "", "")
     if geom.mesh is not None and geom.centroid is not None:
         size = (
@@ -40,7 +42,7 @@ def _describe_geom(geom: GeomInspection) -> tuple[str, ...]:
             format_point(geom.centroid),
         )
     part = f"{geom.fill:.0%} of it" if geom.fill < 1.0 else ""
-    return (geom.name, geom.body, shape, f"{verdict}: {geom.reason}", *size, part)
+    return (geom.name, geom.body, shape, verdict, *size, part)
 
 
 def describe_meshes(geoms: Sequence[GeomInspection]) -> list[Section]:
@@ -75,7 +77,7 @@ def _describe_state(mesh: Diagnosis) -> str:
     if mesh.holes:
         longest = max(hole.perimeter for hole in mesh.holes)
         words = [
-            f"{len(mesh.holes)} holes, to {format_number(longest)} m round, "
+            f"{_count(len(mesh.holes), 'hole')}, to {format_number(longest)} m round, "
             f"{format_number(1e3 * mesh.uncertain_volume)} l in doubt"
         ]
     joined = 1e3 * mesh.joined_volume
@@ -85,9 +87,14 @@ def _describe_state(mesh: Diagnosis) -> str:
         (mesh.inverted, f"{mesh.inverted} inside out"),
         (mesh.degenerate, f"{mesh.degenerate} degenerate"),
         (mesh.duplicates, f"{mesh.duplicates} doubled"),
-        (mesh.shells, f"{mesh.shells} inner shells"),
+        (mesh.shells, _count(mesh.shells, "inner shell")),
         (joined, f"pieces joined, {format_number(joined)} l less"),
         (crossing, f"crosses itself, {format_number(crossing)} l"),
         (mesh.refusal, "refused"),
     )
     return ", ".join(words + [text for fault, text in faults if fault])
+
+
+def _count(number: int, noun: str) -> str:
+    """A number of things."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"

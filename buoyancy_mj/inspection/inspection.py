@@ -6,20 +6,24 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import mujoco
+import numpy as np
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning
+from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import build_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.overlaps import OVERLAP
 from buoyancy_mj.hulls.patterns import parse_fills, parse_shapes
 from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.hulls.tethers import list_roots
 from buoyancy_mj.hulls.verdicts import judge_geoms
 from buoyancy_mj.inspection.geoms import GeomInspection, inspect_geom
 from buoyancy_mj.inspection.vessels import VesselInspection, inspect_vessel
 from buoyancy_mj.meshes.overlaps import find_close_pairs, measure_overlaps
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.building import build_vessel_from_hulls
+from buoyancy_mj.statics.vessel import Vessel
 
 
 class Overlap(NamedTuple):
@@ -46,7 +50,7 @@ class Inspection:
     overlaps: tuple[Overlap, ...]
     """Hulls of different bodies that overlap."""
     vessels: tuple[VesselInspection, ...]
-    """Each kinematic tree with hulls."""
+    """Each vessel: a kinematic tree with hulls, or what welds and connects hold together."""
     problems: tuple[str, ...]
     """Why a geom, a vessel or the whole cannot be put to sea, with the mend."""
 
@@ -77,12 +81,7 @@ def inspect_model(
     forms = parse_shapes(model, selected, selection)
     fills = parse_fills(model, selected, selection)
     geoms = tuple(
-        inspect_geom(
-            model,
-            verdict,
-            convex=forms.get(verdict.geom) == "convex",
-            fill=fills.get(verdict.geom, 1.0),
-        )
+        inspect_geom(model, verdict, selected, forms, fill=fills.get(verdict.geom, 1.0))
         for verdict in verdicts
     )
     problems = [geom.problem for geom in geoms if geom.problem]
@@ -99,10 +98,11 @@ def inspect_model(
 
     # the vessels
     vessels = []
-    for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
+    for root in _find_roots(model, hulls):
         try:
-            vessel = build_vessel_from_hulls(model, hulls, water, body=body_name(model, root))
-            vessels.append(inspect_vessel(vessel, hulls))
+            vessel, notices_of_vessel = _build_vessel(model, hulls, water, root)
+            refused = _list_refused(vessel, geoms)
+            vessels.append(inspect_vessel(vessel, hulls, refused, notices_of_vessel))
         except BuoyancyError as error:
             problems.append(str(error))
     return Inspection(
@@ -126,6 +126,34 @@ def _build_hulls(
         warnings.simplefilter("always", BuoyancyWarning)
         hulls = build_hulls(model, geoms, forms, fills)
     return hulls, [str(entry.message) for entry in caught]
+
+
+def _build_vessel(
+    model: mujoco.MjModel, hulls: Sequence[Hull], water: Water, root: str
+) -> tuple[Vessel, list[str]]:
+    """The vessel with a root body, and the warnings that came with it."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", BuoyancyWarning)
+        vessel = build_vessel_from_hulls(model, hulls, water, body=root)
+    return vessel, [str(entry.message) for entry in caught]
+
+
+def _find_roots(model: mujoco.MjModel, hulls: Sequence[Hull]) -> list[str]:
+    """Name of a root of each vessel, the first that has hulls."""
+    roots = []
+    for bodies in group_floating_bodies(model):
+        with_hulls = [hull.body for hull in hulls if hull.body in bodies]
+        if with_hulls:
+            roots.append(body_name(model, list_roots(model, np.array(with_hulls))[0]))
+    return roots
+
+
+def _list_refused(vessel: Vessel, geoms: Sequence[GeomInspection]) -> list[str]:
+    """Names of the geoms of a vessel that should displace water and are refused."""
+    bodies = {body_name(vessel.model, body) for body in vessel.bodies.tolist()}
+    return [
+        geom.name for geom in geoms if geom.displaces and geom.mesh is None and geom.body in bodies
+    ]
 
 
 def _find_overlaps(model: mujoco.MjModel, hulls: Sequence[Hull]) -> tuple[Overlap, ...]:

@@ -65,14 +65,18 @@ def _convert_geom(geom: GeomInspection) -> dict[str, Any]:
 def _convert_vessel(inspection: VesselInspection) -> dict[str, Any]:
     """A vessel, its rest poses and its righting arms."""
     righting = None if inspection.righting is None else _convert(_read_fields(inspection.righting))
+    known = not inspection.refused
     return {
-        **_convert_budget(inspection.total),
-        "lift": inspection.total.lift,
+        **_convert_budget(inspection.total, known=known),
+        "lift": inspection.total.lift if known else None,
+        "roots": list(inspection.root_names),
+        "refused": list(inspection.refused),
         "sentence": inspection.sentence,
         "centre_of_gravity": _convert(inspection.centre_of_gravity),
-        "centre_of_buoyancy": _convert(inspection.centre_of_buoyancy),
+        "centre_of_buoyancy": _convert(inspection.centre_of_buoyancy) if known else None,
         "bodies": [
-            _convert_budget(budget) | {"gravity": budget.gravity} for budget in inspection.bodies
+            _convert_budget(budget, known=known) | {"gravity": budget.gravity}
+            for budget in inspection.bodies
         ],
         "rest": None if inspection.rest is None else _convert_rest(inspection.rest),
         "rests": [_convert_rest(rest) for rest in inspection.rests],
@@ -81,13 +85,14 @@ def _convert_vessel(inspection: VesselInspection) -> dict[str, Any]:
     }
 
 
-def _convert_budget(budget: BuoyancyBudget) -> dict[str, Any]:
-    """What a body weighs and displaces."""
+def _convert_budget(budget: BuoyancyBudget, *, known: bool) -> dict[str, Any]:
+    """What a body weighs and displaces; None where that is not known."""
     return {
         "body": budget.body,
         "mass": budget.mass,
-        "displaced": budget.displacement,
-        "reserve": budget.reserve,
+        "carried": budget.carried,
+        "displaced": budget.displacement if known else None,
+        "reserve": budget.reserve if known else None,
     }
 
 

@@ -22,7 +22,7 @@ def list_sections(inspection: Inspection) -> tuple[Section, ...]:
     if inspection.overlaps:
         sections.append(_describe_overlaps(inspection.overlaps))
     for vessel in inspection.vessels:
-        sections += describe_vessel(vessel)
+        sections += describe_vessel(vessel, alone=len(inspection.vessels) == 1)
     if inspection.problems:
         sections.append(Section("Problems", (), (), inspection.problems))
     return tuple(sections)

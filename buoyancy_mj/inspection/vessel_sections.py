@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from buoyancy_mj.inspection.sentences import join_names
 from buoyancy_mj.inspection.tables import (
     Section,
     format_bound,
@@ -17,53 +18,83 @@ from buoyancy_mj.inspection.vessels import BuoyancyBudget, VesselInspection
 from buoyancy_mj.statics.equilibrium import Equilibrium
 from buoyancy_mj.statics.righting import RightingArm
 
+_CARRIED = 2
+"""Column of a budget that tells what gravity compensation carries."""
 
-def describe_vessel(inspection: VesselInspection) -> list[Section]:
-    """Describe whether a vessel floats, and how it rests."""
+
+def describe_vessel(inspection: VesselInspection, *, alone: bool) -> list[Section]:
+    """Describe whether a vessel floats, and how it rests.
+
+    Args:
+        inspection: the vessel.
+        alone: whether it is the only one, so that titles need not name it.
+    """
+    name = f"'{inspection.total.body}'"
     sections = [_describe_budgets(inspection)]
     if inspection.rest is not None:
-        sections.append(_describe_rest(inspection.rest))
-        sections.append(_compare_rests(inspection.rests))
+        rest, rests = inspection.rest, inspection.rests
+        sections.append(_describe_rest("At rest" if alone else f"{name} at rest", rest))
+        who = "it" if alone else name
+        sections.append(_compare_rests(f"Every pose in which {who} rests", rests))
     if inspection.righting is not None:
-        sections.append(_describe_righting(inspection.righting))
+        title = f"Righting arm{'' if alone else f' of {name}'} from there, trim free"
+        sections.append(_describe_righting(title, inspection.righting))
     return sections
 
 
 def _describe_budgets(inspection: VesselInspection) -> Section:
     """What each body weighs and displaces, and all of them."""
     total = inspection.total
-    rows = [_list_budget(total.body, total)]
+    alone = len(inspection.root_names) == 1
+    budgets = [(total.body, total)]
     if len(inspection.bodies) > 1:
-        rows = [
-            *(_list_budget(budget.body, budget) for budget in inspection.bodies),
-            _list_budget(f"{total.body}, all", total),
-        ]
+        budgets = [(budget.body, budget) for budget in inspection.bodies]
+        budgets.append((f"{total.body}, all" if alone else "all", total))
+    known = not inspection.refused
+    rows = [_list_budget(name, budget, known=known) for name, budget in budgets]
+
+    # what gravity compensation carries has a column where it acts
+    compensated = any(budget.carried for _, budget in budgets)
+    header = ("body", "mass [kg]", "carried [kg]", "displaces [kg]", "reserve [kg]", "net lift [N]")
+    kept = [i for i in range(len(header)) if compensated or i != _CARRIED]
+
+    together = "" if alone else ", held together,"
+    return Section(
+        title=f"Will {join_names(inspection.root_names)}{together} float?",
+        header=tuple(header[i] for i in kept),
+        rows=tuple(tuple(row[i] for i in kept) for row in rows),
+        notes=(
+            inspection.sentence,
+            *((_describe_centres(inspection),) if known else ()),
+            *inspection.notes,
+        ),
+    )
+
+
+def _describe_centres(inspection: VesselInspection) -> str:
+    """Where the centres of gravity and of buoyancy are, and how far apart."""
+    name = inspection.total.body
+    frame = "its own frame" if len(inspection.root_names) == 1 else f"the frame of '{name}'"
     distance = round(float(np.linalg.norm(inspection.vessel.centroid)), 6)
-    centres = (
+    return (
         f"CG {format_point(inspection.centre_of_gravity)} m, "
-        f"CB submerged {format_point(inspection.centre_of_buoyancy)} m in its own frame, "
+        f"CB submerged {format_point(inspection.centre_of_buoyancy)} m in {frame}, "
         f"{format_number(distance)} m apart"
     )
-    return Section(
-        title=f"Will '{total.body}' float?",
-        header=("body", "mass [kg]", "displaces [kg]", "reserve [kg]", "net lift [N]"),
-        rows=tuple(rows),
-        notes=(inspection.sentence, centres, *inspection.notes),
-    )
 
 
-def _list_budget(name: str, budget: BuoyancyBudget) -> tuple[str, ...]:
-    """Cells of a budget."""
+def _list_budget(name: str, budget: BuoyancyBudget, *, known: bool) -> tuple[str, ...]:
+    """Cells of a budget; '-' where the water that it displaces is not known."""
+    water = (format_number(budget.displacement), f"{budget.reserve:+.4g}", f"{budget.lift:+.4g}")
     return (
         name,
         format_number(budget.mass),
-        format_number(budget.displacement),
-        f"{budget.reserve:+.4g}",
-        f"{budget.lift:+.4g}",
+        format_number(budget.carried),
+        *(water if known else ("-", "-", "-")),
     )
 
 
-def _describe_rest(rest: Equilibrium) -> Section:
+def _describe_rest(title: str, rest: Equilibrium) -> Section:
     """Hydrostatics where the vessel comes to rest."""
     at = rest.hydrostatics
     waterline = format_numbers((at.waterline_length, at.waterline_beam))
@@ -89,10 +120,10 @@ def _describe_rest(rest: Equilibrium) -> Section:
         ("stiffness of roll, pitch", format_numbers((roll, pitch)), "N m"),
         ("stability", rest.stability, eigenvalues),
     )
-    return Section("At rest", (), rows)
+    return Section(title, (), rows)
 
 
-def _compare_rests(rests: Sequence[Equilibrium]) -> Section:
+def _compare_rests(title: str, rests: Sequence[Equilibrium]) -> Section:
     """All rest poses, their energy over that of the lowest."""
     rows = tuple(
         (
@@ -106,10 +137,10 @@ def _compare_rests(rests: Sequence[Equilibrium]) -> Section:
         for rest in rests
     )
     header = ("heel [deg]", "trim [deg]", "draft [m]", "GM [m]", "stability", "energy [J]")
-    return Section("Every pose in which it rests", header, rows)
+    return Section(title, header, rows)
 
 
-def _describe_righting(arm: RightingArm) -> Section:
+def _describe_righting(title: str, arm: RightingArm) -> Section:
     """The largest righting arm, and the heels where the curve ends and sites go under."""
     heel, largest = arm.maximum
     rows = (
@@ -125,4 +156,4 @@ def _describe_righting(arm: RightingArm) -> Section:
             for name, angle in arm.immersed.items()
         ),
     )
-    return Section("Righting arm from there, trim free", (), rows)
+    return Section(title, (), rows)

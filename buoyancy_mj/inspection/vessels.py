@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning
+from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.inspection.sentences import list_doubts, write_sentence
@@ -30,6 +31,8 @@ class BuoyancyBudget:
     """Name of the body."""
     mass: float
     """Mass [kg]."""
+    carried: float
+    """Part of its mass that gravity compensation carries [kg]."""
     displacement: float
     """Mass of the water that it displaces fully submerged [kg]."""
     gravity: float
@@ -38,7 +41,7 @@ class BuoyancyBudget:
     @property
     def reserve(self) -> float:
         """Mass [kg] that it could carry, negative where it is too heavy."""
-        return self.displacement - self.mass
+        return self.displacement - (self.mass - self.carried)
 
     @property
     def lift(self) -> float:
@@ -60,6 +63,8 @@ class VesselInspection:
     """Where it comes to rest from its pose in the model; None if it sinks, or is not free."""
     rests: tuple[Equilibrium, ...]
     """All poses in which it stays at rest, lowest energy first."""
+    refused: tuple[str, ...]
+    """Names of its geoms whose meshes are refused; while there are any, nothing else is known."""
     righting: RightingArm | None
     """Righting arms from where it rests."""
     notes: tuple[str, ...]
@@ -75,7 +80,14 @@ class VesselInspection:
         """Budget of all its bodies, under the name of the root body."""
         vessel = self.vessel
         displacement = vessel.water.density * vessel.volume
-        return BuoyancyBudget(vessel.name, vessel.mass, displacement, vessel.gravity)
+        return BuoyancyBudget(
+            vessel.name, vessel.whole_mass, vessel.carried_mass, displacement, vessel.gravity
+        )
+
+    @property
+    def root_names(self) -> tuple[str, ...]:
+        """Names of the roots of its kinematic trees, which welds and connects hold together."""
+        return tuple(body_name(self.vessel.model, tree.root) for tree in self.vessel.trees)
 
     @property
     def centre_of_gravity(self) -> NDArray[np.float64]:
@@ -88,20 +100,28 @@ class VesselInspection:
         return self.vessel.centre_of_gravity + self.vessel.centroid
 
 
-def inspect_vessel(vessel: Vessel, hulls: Sequence[Hull]) -> VesselInspection:
+def inspect_vessel(
+    vessel: Vessel,
+    hulls: Sequence[Hull],
+    refused: Sequence[str] = (),
+    notices: Sequence[str] = (),
+) -> VesselInspection:
     """Inspect a vessel.
 
     Args:
         vessel: the vessel.
         hulls: all hulls of its model, by body.
+        refused: names of its geoms whose meshes are refused, so that its hulls are not whole.
+        notices: what was told when it was built.
     """
-    notes = list_doubts(vessel)
+    notes = [*notices, *([] if refused else list_doubts(vessel))]
     rest: Equilibrium | None = None
     rests: tuple[Equilibrium, ...] = ()
     righting: RightingArm | None = None
 
     # a search that fails becomes a note
-    if vessel.free and vessel.reserve >= -NEUTRAL * vessel.mass:
+    floats = vessel.mass > 0.0 and vessel.reserve >= -NEUTRAL * vessel.mass
+    if floats and vessel.free and not refused:
         try:
             rest = find_equilibrium(vessel)
             rests = find_equilibria(vessel)
@@ -118,9 +138,10 @@ def inspect_vessel(vessel: Vessel, hulls: Sequence[Hull]) -> VesselInspection:
     return VesselInspection(
         vessel=vessel,
         bodies=_weigh_bodies(vessel, hulls),
-        sentence=write_sentence(vessel, rest),
+        sentence=write_sentence(vessel, rest, refused),
         rest=rest,
         rests=rests,
+        refused=tuple(refused),
         righting=righting,
         notes=tuple(notes),
     )
@@ -129,14 +150,16 @@ def inspect_vessel(vessel: Vessel, hulls: Sequence[Hull]) -> VesselInspection:
 def _weigh_bodies(vessel: Vessel, hulls: Sequence[Hull]) -> tuple[BuoyancyBudget, ...]:
     """Budgets of its bodies; a body without joints counts with the one that it moves with."""
     model = vessel.model
-    tree = np.flatnonzero(model.body_rootid == vessel.root)
-    carriers = model.body_weldid[tree]
+    carriers = model.body_weldid[vessel.bodies]
+    masses = model.body_mass[vessel.bodies]
+    carried = masses - find_weighing_masses(model)[vessel.bodies]
     budgets = []
     for body in np.unique(carriers):
-        mass = float(model.body_mass[tree][carriers == body].sum())
+        mass = float(masses[carriers == body].sum())
         volume = sum(hull.displaced_volume for hull in hulls if hull.body == body)
         if mass > 0.0 or volume > 0.0:
             name = body_name(model, int(body))
             displacement = vessel.water.density * volume
-            budgets.append(BuoyancyBudget(name, mass, displacement, vessel.gravity))
+            lifted = float(carried[carriers == body].sum())
+            budgets.append(BuoyancyBudget(name, mass, lifted, displacement, vessel.gravity))
     return tuple(budgets)

@@ -9,53 +9,31 @@ kernel of another file changes that it has built in. So what is older than any s
 """
 
 import contextlib
-import sys
+import os
 from pathlib import Path
-from typing import Any
 
-from numba.core import caching, config, event
+from numba.core import event
+
+from buoyancy_mj.kernels.caches import list_caches
+from buoyancy_mj.kernels.progress import CompilationProgress
 
 _FOLDER = Path(__file__).parent
 
 
-def _caches(source: Path) -> tuple[Path, ...]:
-    """Folders where Numba may keep the compiled kernels of a source file."""
-    name = caching._CacheLocator.get_suitable_cache_subpath(str(source))
-    user = caching.AppDirs(appname="numba", appauthor=False).user_cache_dir
-    # CACHE_DIR is NUMBA_CACHE_DIR, or empty; the user's serves where the sources are read-only
-    return source.parent / "__pycache__", Path(config.CACHE_DIR or user, name), Path(user, name)
-
-
 def _drop_stale(folder: Path) -> None:
-    """Remove compiled kernels that are older than the newest source in `folder`."""
+    """Remove compiled kernels that are older than the newest source in `folder`.
+
+    Also those that another user has left unreadable: Numba would not go on beside them.
+    """
     sources = list(folder.rglob("*.py"))
     newest = max(source.stat().st_mtime for source in sources)
-    for cache in {cache for source in sources for cache in _caches(source)}:
+    for cache in {cache for source in sources for cache in list_caches(source)}:
         for compiled in cache.glob("*.nb[ci]"):
             # another process may be doing the same, or the folder be read-only
             with contextlib.suppress(OSError):
-                if compiled.stat().st_mtime < newest:
+                if compiled.stat().st_mtime < newest or not os.access(compiled, os.R_OK):
                     compiled.unlink()
 
 
-class _Patience(event.Listener):  # type: ignore[misc]
-    """Says once that compiling takes a while, when a kernel is compiled anew."""
-
-    def __init__(self) -> None:
-        self._told = False
-
-    def on_start(self, event: Any) -> None:
-        """A function begins to be compiled."""
-        if not self._told and event.data["dispatcher"].py_func.__module__.startswith(__name__):
-            self._told = True
-            sys.stderr.write(
-                "buoyancy_mj: compiling, once per installation; this takes about half a minute\n"
-            )
-            sys.stderr.flush()
-
-    def on_end(self, event: Any) -> None:
-        """It is done."""
-
-
 _drop_stale(_FOLDER)
-event.register("numba:compile", _Patience())
+event.register("numba:compile", CompilationProgress())

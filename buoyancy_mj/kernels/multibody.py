@@ -126,6 +126,16 @@ NO_GRAVITY, PGS = 1 << 7, 0
 
 
 @njit(cache=True, error_model="numpy")
+def sum_sizes(geom_size):
+    """A sum over the bits of the sizes of all geoms (ngeom, 3), which another size changes."""
+    total = np.int64(0)
+    for geom in range(geom_size.shape[0]):
+        for k in range(3):
+            total = 31 * total + geom_size[geom, k]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
 def downward_gravity(gravity, disableflags):
     """Downward acceleration [m/s^2] of a model; NaN for gravity that is not along -z.
 

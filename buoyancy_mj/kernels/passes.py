@@ -1,28 +1,33 @@
 """One pass of the water over the bodies of a model, called by compiled code and by Python alike.
 
+Each load is one function. Python calls it as it is, and compiled code by the address of its entry,
+see `entries.loads`: what does not act is never compiled.
+
 To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArrays`, name it in
-`Causes`, and call the kernel in `add_up`.
+`Causes`, and add a function of `PassArrays` to `LOADS`.
 """
 
 from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import njit
+from numba.extending import register_jitable
 
 from buoyancy_mj.kernels import damping, inertia, panels, pressure, wrenches
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.inertia import AddedMass
-from buoyancy_mj.kernels.multibody import PGS
-from buoyancy_mj.kernels.sea import PressureModel, Sea
+from buoyancy_mj.kernels.multibody import PGS, Engine
+from buoyancy_mj.kernels.scratch import Scratch
+from buoyancy_mj.kernels.sea import Sea
 
 ALIVE, MODEL, DATA, WATER, SIZES, AUGMENTED, IDS = range(7)
 """Columns of `Record.ids`, and how many: whether the record is in use; addresses of its mjModel,
 mjData and water; a sum over the sizes of the model's geoms; and whether `Record.inertia` is a mass
 matrix with added mass in it."""
 UNCHANGED, AUGMENT, AUGMENT_DUAL = range(3)
-"""What `apply` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
+"""What `augment` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
 same for a solver of the dual problem, whose constraints must be projected anew too."""
 
 
@@ -73,92 +78,171 @@ class Record(NamedTuple):
     """Of what the pass was, in columns `ALIVE` to `AUGMENTED`."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def add_up(loads, engine, gravity, scratch, record):
-    """Evaluate each load, and the sum of all, from what is wet.
+class PassArrays(NamedTuple):
+    """What a load reads, and the record in which it writes its cause."""
 
-    Args:
-        loads: `LoadArrays`, what acts.
-        engine: `multibody.Engine`, how the bodies lie and move.
-        gravity: downward acceleration [m/s^2].
-        scratch: `scratch.Scratch`.
-        record: `Record`; `wet` is read, all else up to `total` is written.
-    """
-    sea, bodies, time, timestep = loads.sea, engine.bodies, engine.time, engine.option.timestep
-    wet, owners, centres, causes = record.wet, loads.owners, record.centres, record.causes
-    specific_weight = sea.density * gravity
-    wrenches.merge(wet, owners, centres)
-    for cause in causes:
+    loads: LoadArrays
+    engine: Engine
+    gravity: float
+    """Downward acceleration [m/s^2]."""
+    scratch: Scratch
+    record: Record
+    """`wet` and `centres` are of this pass."""
+
+
+@njit(cache=True, error_model="numpy")
+def begin(loads, record):
+    """Find the submerged volume of each body, and set all causes to zero."""
+    wrenches.merge(record.wet, loads.owners, record.centres)
+    for cause in record.causes:
         cause[:, :] = 0.0
 
-    # each load
-    wrenches.add_buoyancy(wet, owners, specific_weight, bodies.xipos, causes.buoyancy)
-    if sea.pressure != PressureModel.archimedes and sea.waves.shape[0] > 0:
-        pressure.press_hulls(loads.hulls, engine.geoms, sea, time, scratch.pressure, record.heads)
-        wrenches.add_wave_pressure(
-            record.heads,
-            wet,
-            owners,
-            loads.hulls.frames,
-            engine.geoms.geom_xpos,
-            specific_weight,
-            bodies.xipos,
-            causes.wave_pressure,
-        )
-    if loads.damping.bodies.shape[0] > 0:
-        damping.add_drag(loads.damping, bodies, sea, time, timestep, centres, causes.drag)
-    if loads.damping.panels.shape[0] > 0:
-        panels.add_panels(
-            loads.damping,
-            loads.hulls,
-            owners,
-            bodies,
-            engine.geoms,
-            sea,
-            time,
-            timestep,
-            wet,
-            causes.drag,
-        )
-    if causes.radiation.shape[0] > 0:
-        damping.add_radiation(
-            loads.damping, owners, bodies, sea, time, timestep, wet, centres, causes.radiation
-        )
-    if loads.added_mass.bodies.shape[0] > 0:
-        inertia.add_reaction(
-            loads.added_mass, bodies, engine.joints, sea, time, centres, causes.added_mass
-        )
 
-    # their sum
+@njit(cache=True, error_model="numpy")
+def end(time, record):
+    """Sum up the causes at a time [s]."""
     total = record.total
     total[:, :] = 0.0
-    for cause in causes:
+    for cause in record.causes:
         for b in range(cause.shape[0]):
             for i in range(6):
                 total[b, i] += cause[b, i]
     record.instant[0] = time
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def apply(loads, engine, record):
-    """Add the loads of `add_up` to the engine's forces, and the added mass to its mass matrix.
+@register_jitable
+def add_buoyancy(arrays):
+    """Archimedes' force."""
+    loads, record = arrays.loads, arrays.record
+    wrenches.add_buoyancy(
+        record.wet,
+        loads.owners,
+        loads.sea.density * arrays.gravity,
+        arrays.engine.bodies.xipos,
+        record.causes.buoyancy,
+    )
+
+
+@register_jitable
+def add_wave_pressure(arrays):
+    """What the pressure under waves adds to it."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    pressure.press_hulls(
+        loads.hulls, engine.geoms, loads.sea, engine.time, arrays.scratch.pressure, record.heads
+    )
+    wrenches.add_wave_pressure(
+        record.heads,
+        record.wet,
+        loads.owners,
+        loads.hulls.frames,
+        engine.geoms.geom_xpos,
+        loads.sea.density * arrays.gravity,
+        engine.bodies.xipos,
+        record.causes.wave_pressure,
+    )
+
+
+@register_jitable
+def add_drag(arrays):
+    """Drag that is linear and quadratic in the velocity of a body."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    damping.add_drag(
+        loads.damping,
+        engine.bodies,
+        loads.sea,
+        engine.time,
+        engine.option.timestep,
+        record.centres,
+        record.causes.drag,
+    )
+
+
+@register_jitable
+def add_panel_drag(arrays):
+    """Drag of each panel of a hull."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    panels.add_panels(
+        loads.damping,
+        loads.hulls,
+        loads.owners,
+        engine.bodies,
+        engine.geoms,
+        loads.sea,
+        engine.time,
+        engine.option.timestep,
+        record.wet,
+        record.causes.drag,
+    )
+
+
+@register_jitable
+def add_radiation(arrays):
+    """Damping by the waves that a body makes."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    damping.add_radiation(
+        loads.damping,
+        loads.owners,
+        engine.bodies,
+        loads.sea,
+        engine.time,
+        engine.option.timestep,
+        record.wet,
+        record.centres,
+        record.causes.radiation,
+    )
+
+
+@register_jitable
+def add_reaction(arrays):
+    """What added mass does beside its inertia."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    inertia.add_reaction(
+        loads.added_mass,
+        engine.bodies,
+        engine.joints,
+        loads.sea,
+        engine.time,
+        record.centres,
+        record.causes.added_mass,
+    )
+
+
+LOADS = (
+    add_buoyancy,
+    add_wave_pressure,
+    add_drag,
+    add_panel_drag,
+    add_radiation,
+    add_reaction,
+)
+"""All loads, in the order in which they are added."""
+
+
+@njit(cache=True, error_model="numpy")
+def deliver(loads, engine, record):
+    """Add the sum of all loads to the engine's forces."""
+    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
+
+
+@njit(cache=True, error_model="numpy")
+def augment(loads, engine, record):
+    """Add the added mass of what is wet to the engine's mass matrix, once in each pass.
 
     Returns:
         `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
     """
-    done = UNCHANGED
-    if loads.added_mass.bodies.shape[0] > 0 and not _is_augmented(engine.mass_matrix.M, record):
-        mass = engine.mass_matrix.M
-        record.ids[AUGMENTED] = 0
-        if inertia.add_inertia(
-            loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
-        ):
-            record.ids[AUGMENTED] = 1
-            record.inertia[:] = mass
-            dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
-            done = AUGMENT_DUAL if dual else AUGMENT
-    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
-    return done
+    mass = engine.mass_matrix.M
+    if _is_augmented(mass, record):
+        return UNCHANGED
+    record.ids[AUGMENTED] = 0
+    if not inertia.add_inertia(
+        loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
+    ):
+        return UNCHANGED
+    record.ids[AUGMENTED] = 1
+    record.inertia[:] = mass
+    dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
+    return AUGMENT_DUAL if dual else AUGMENT
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -8,7 +8,7 @@ surface and summed at points, see `quadrature`.
 import math
 
 import numpy as np
-from numba import njit
+from numba import int64, njit
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import local, tree
@@ -73,7 +73,8 @@ def press_hulls(
             continue
         setting = Setting((origin[0], origin[1], origin[2] - level), time, dynamic)
         sums[:], turned[:] = 0.0, 0.0
-        count = many = 0
+        # int64: a literal 0 would have all that it is given to compiled twice
+        count = many = int64(0)
         i, end = nodes[h], nodes[h + 1]
         while i < end:
             b0, b1, b2 = triple(boxes, i, tree.MIDDLE)

@@ -3,7 +3,7 @@
 import math
 
 import numpy as np
-from numba import njit
+from numba import boolean, njit
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -83,11 +83,11 @@ def misenclosed(vertices, faces, count):
     # count the hits of each ray, then list them
     starts = np.zeros(count * count + 1, np.int64)
     heights, signs = np.zeros(0), np.zeros(0, np.int8)
-    _hit(vertices, faces, low, step, count, False, starts[1:], heights, signs)
+    _hit(vertices, faces, low, step, count, boolean(0), starts[1:], heights, signs)
     for ray in range(count * count):
         starts[ray + 1] += starts[ray]
     heights, signs = np.zeros(starts[-1]), np.zeros(starts[-1], np.int8)
-    _hit(vertices, faces, low, step, count, True, starts[:-1].copy(), heights, signs)
+    _hit(vertices, faces, low, step, count, boolean(1), starts[:-1].copy(), heights, signs)
 
     # walk up each ray
     doubled = inverted = 0.0
@@ -127,7 +127,8 @@ def _hit(vertices, faces, low, step, count, listing, places, heights, signs):
 @njit(cache=True, error_model="numpy")
 def _misenclosed_along(heights, signs, doubled, inverted):
     """Add to lengths enclosed more than once and less than never those of one ray, by its hits."""
-    order = np.argsort(heights)
+    # the kind of sort that trees use, so that no other is compiled
+    order = np.argsort(heights, kind="mergesort")
     winding = 0
     for n in range(heights.shape[0] - 1):
         winding += signs[order[n]]

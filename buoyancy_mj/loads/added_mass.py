@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.special import elliprd
 
-from buoyancy_mj.errors import ModelError, choices
+from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.hulls.custom import find_body, read_numerics
 from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
 from buoyancy_mj.hulls.names import body_name
@@ -20,6 +20,27 @@ QUANTITY = "added_mass"
 """Quantity of the model's numerics 'added_mass:BODY'."""
 SOURCES = ("model", "estimate", "none")
 """Where added mass comes from: the model's numerics; an estimate for bodies without; nowhere."""
+
+
+def check_source(source: object) -> None:
+    """Refuse what is no source of added mass; which bodies there are is known with the model.
+
+    Raises:
+        ModelError: it is none of `SOURCES`, None or a mapping by the names of bodies, or it holds
+            a matrix that is none.
+    """
+    if source is None or (isinstance(source, str) and source in SOURCES):
+        return
+    if not isinstance(source, Mapping):
+        raise ModelError(
+            f"added mass is {describe(source)}; {choices(source, SOURCES)}, or matrices by body"
+        )
+    for name, matrix in source.items():
+        if not isinstance(name, str):
+            raise ModelError(
+                f"added mass is given for body {describe(name)}; a body's name is a text"
+            )
+        parse_matrix(matrix, f"the added mass of body '{name}'")
 
 
 def resolve_added_mass(
@@ -40,6 +61,8 @@ def resolve_added_mass(
         ModelError: an unknown source or body; a matrix of another size, not finite, not symmetric
             or not positive; or one that does not fit into what MuJoCo keeps of a body's inertia.
     """
+    check_source(source)
+
     # by the user, by the model, or by an estimate
     by_body = group_by_body(hulls)
     matrices = _read_matrices(model, list(by_body), source)
@@ -125,12 +148,8 @@ def _read_matrices(
         }
     elif source in ("model", "estimate"):
         numbers = read_numerics(model, QUANTITY, bodies)
-    elif source in (None, "none"):
-        numbers = {}
     else:
-        raise ModelError(
-            f"added mass is '{source}'; {choices(source, SOURCES)}, or matrices by body"
-        )
+        numbers = {}
     return {
         body: parse_matrix(value, f"the added mass of body '{body_name(model, body)}'")
         for body, value in numbers.items()

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import ModelError, choices
+from buoyancy_mj.hulls.custom import split_quantity
 from buoyancy_mj.loads import datasets
 from buoyancy_mj.loads.matrices import move_to_origin, symmetric_part
 
@@ -131,7 +132,7 @@ def add_coefficients(spec: mujoco.MjSpec, coefficients: Mapping[str, Coefficient
         ModelError: the model has no such body.
     """
     bodies = {body.name for body in spec.bodies}
-    numerics = {numeric.name for numeric in spec.numerics}
+    given = {split_quantity(numeric.name) for numeric in spec.numerics}
     for name, of_body in coefficients.items():
         if name not in bodies:
             raise ModelError(f"the model has no body '{name}'; {choices(name, bodies)}")
@@ -139,5 +140,5 @@ def add_coefficients(spec: mujoco.MjSpec, coefficients: Mapping[str, Coefficient
             ("added_mass", of_body.added_mass.ravel()),
             ("radiation_damping", of_body.radiation),
         ):
-            if f"{quantity}:{name}" not in numerics:
+            if (quantity, name) not in given:
                 spec.add_numeric(name=f"{quantity}:{name}", data=values.tolist(), size=len(values))

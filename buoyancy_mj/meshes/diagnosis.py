@@ -23,6 +23,8 @@ class Diagnosis:
 
     name: str
     """What messages call the mesh."""
+    mend: str = "or take its convex hull instead"
+    """What helps beside a better mesh where no repair is safe: the end of a refusal."""
     triangles: int = 0
     """Number of triangles before the repair."""
     extents: tuple[float, float, float] = (0.0, 0.0, 0.0)

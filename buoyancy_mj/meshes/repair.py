@@ -52,9 +52,18 @@ def repair(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[T
     return report.mesh, report.notices
 
 
-def diagnose(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> Diagnosis:
-    """Find the faults of a mesh and repair it as far as that is safe; see `repair`."""
-    report = Diagnosis(name)
+def diagnose(
+    vertices: ArrayLike, faces: ArrayLike, name: str = "mesh", mend: str = Diagnosis.mend
+) -> Diagnosis:
+    """Find the faults of a mesh and repair it as far as that is safe; see `repair`.
+
+    Args:
+        vertices: corners (n, 3) [m].
+        faces: indices of the corners of each triangle (m, 3).
+        name: what messages call the mesh.
+        mend: what helps beside a better mesh where no repair is safe: the end of a refusal.
+    """
+    report = Diagnosis(name, mend)
     try:
         report.mesh = _repair(report, vertices, faces)
     except MeshError as error:
@@ -125,10 +134,7 @@ def _check_holes(report: Diagnosis, volume: float) -> None:
         f"put {uncertain:.3g} m^3 ({uncertain / volume:.2%} of its volume) in doubt"
     )
     if uncertain > MOST_UNCERTAIN * volume:
-        raise MeshError(
-            f"it is open: {finding}; close the mesh, "
-            "take its convex hull (--hull convex), or leave the geom out (--geoms)"
-        )
+        raise MeshError(f"it is open: {finding}; close the mesh, {report.mend}")
     report.notices.append(f"{finding}; they were closed")
 
 
@@ -139,7 +145,7 @@ def _check_crossings(report: Diagnosis, volume: float) -> None:
         raise MeshError(
             f"it crosses itself: about {report.doubled_volume:.3g} m^3 is enclosed twice and "
             f"{report.inside_out_volume:.3g} m^3 inside out, of {volume:.3g} m^3; "
-            "join its parts by a boolean union, or take its convex hull (--hull convex)"
+            f"join its parts by a boolean union, {report.mend}"
         )
     if crossing > NOTICEABLE * volume:
         report.notices.append(

@@ -1,15 +1,13 @@
-"""MuJoCo's primitive geoms, and convex hulls, as closed meshes.
+"""MuJoCo's primitive geoms as closed meshes.
 
 A faceted solid inscribed in a round one is too small. It is scaled until its volume is the true
 one, which leaves a draft or a centroid wrong by less than 0.1 % of the size at this resolution.
 """
 
 import numpy as np
-import scipy.spatial
 import trimesh
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from buoyancy_mj.errors import MeshError
 from buoyancy_mj.meshes.mesh import TriMesh
 
 SUBDIVISIONS = 4
@@ -53,21 +51,6 @@ def capsule(radius: float, half_length: float) -> TriMesh:
     profile = np.vstack([cap[::-1] * [1.0, -1.0], cap])
     solid = _revolve(profile, np.pi * (2.0 * half_length / radius + 4.0 / 3.0))
     return TriMesh(solid.vertices * radius, solid.faces)
-
-
-def convex_hull(vertices: NDArray[np.float64], name: str = "mesh") -> TriMesh:
-    """The convex hull of vertices (n, 3) [m]: an approximation for meshes that bound no volume.
-
-    Raises:
-        MeshError: the vertices lie in a plane; the message calls them `name`.
-    """
-    try:
-        solid = trimesh.convex.convex_hull(vertices)
-    except scipy.spatial.QhullError as error:
-        raise MeshError(
-            f"{name}: it is flat and has no convex hull; give it thickness, or leave the geom out"
-        ) from error
-    return TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))
 
 
 def _revolve(profile: ArrayLike, volume: float) -> TriMesh:

@@ -7,6 +7,9 @@ from importlib.metadata import version
 
 from buoyancy_mj.paper.contents import STUDIES
 
+PAGE_TITLE = "# The source paper, reproduced"
+"""The first line of the page."""
+
 
 def render_page(header: Sequence[str], rows: Sequence[tuple[str, ...]], *, quick: bool) -> str:
     """Write the page in Markdown.
@@ -29,6 +32,7 @@ def render_page(header: Sequence[str], rows: Sequence[tuple[str, ...]], *, quick
         f"MuJoCo {version('mujoco')}, SciPy {version('scipy')}"
     )
     return _PAGE.format(
+        title=PAGE_TITLE,
         table="\n".join(table),
         pictures="\n\n".join(pictures),
         machine=machine,
@@ -36,7 +40,7 @@ def render_page(header: Sequence[str], rows: Sequence[tuple[str, ...]], *, quick
     )
 
 
-_PAGE = """# The source paper, reproduced
+_PAGE = """{title}
 
 {quick}Mahbub and Shaharear (2025), *Real-Time Buoyancy Estimation for AUV Simulations Using Convex
 Hull-Based Submerged Volume Calculation* (arXiv 2509.03804), put water into a simulator. Their

@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from buoyancy_mj.errors import BuoyancyError, choices
+from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.paper.contents import STUDIES
-from buoyancy_mj.paper.page import render_page
+from buoyancy_mj.paper.page import PAGE_TITLE, render_page
 from buoyancy_mj.paper.study import Result, Study, Table
 
 HEADER = ("claim", "the paper", "measured here", "holds?", "command")
@@ -43,7 +44,8 @@ def reproduce(
 
     rows: list[tuple[str, ...]] = []
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        page = folder / "README.md"
+        require_own(page, PAGE_TITLE)
         for name, study in STUDIES.items():
             if only and name not in only:
                 continue
@@ -57,7 +59,8 @@ def reproduce(
             ]
         if not only:
             _write_csv(folder / "claims.csv", HEADER, rows)
-            (folder / "README.md").write_text(render_page(HEADER, rows, quick=quick))
+            with replace_file(page) as part:
+                part.write_text(render_page(HEADER, rows, quick=quick))
     except OSError as error:
         raise BuoyancyError(f"cannot write the reproduction to '{folder}': {error}") from error
     return rows
@@ -69,7 +72,8 @@ def _write_result(folder: Path, study: Study, result: Result) -> None:
         _write_csv(folder / f"{name}.csv", list(table), _format_rows(table))
     if study.draw is not None:
         picture = folder / f"{study.name}.png"
-        study.draw(result).savefig(picture, dpi=DPI, metadata={"Software": None})
+        with replace_file(picture) as part:
+            study.draw(result).savefig(part, dpi=DPI, metadata={"Software": None})
 
 
 def _format_rows(table: Table) -> Iterable[tuple[str, ...]]:
@@ -81,7 +85,9 @@ def _format_rows(table: Table) -> Iterable[tuple[str, ...]]:
 
 
 def _write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    with path.open("w", newline="") as file:
+    """Write a table; one of the same columns that is there is replaced."""
+    require_own(path, ",".join(header))
+    with replace_file(path) as part, part.open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
         writer.writerows(rows)

@@ -2,16 +2,15 @@
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
 
 import mujoco
 import numpy as np
 from mujoco import batch
-from numpy.typing import NDArray
 
+from buoyancy_mj.engine.c_functions import find_cause, raise_causes
 from buoyancy_mj.engine.instances import plugin_instances
-from buoyancy_mj.errors import DivergenceError
-from buoyancy_mj.scenes.divergence import describe_divergence
+from buoyancy_mj.errors import BuoyancyError, DivergenceError
+from buoyancy_mj.scenes.divergence import QUANTITIES, describe_divergence
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.trajectory import Trajectory
 
@@ -19,9 +18,11 @@ BATCH_MEMORY = 2e8
 """Memory that the trajectories of a batch may take [bytes]."""
 MOST_MEMORY = 2e9
 """Memory that the trajectory of one run may take [bytes]; a longer run goes alone, without it."""
+BLOCK_TIME = 0.25
+"""About how long a batch steps before Ctrl-C is asked for [s]."""
+_BAD_VALUES = [int(warning) for warning in QUANTITIES]
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 _SIZES = ("nq", "nv", "na", "nu", "nbody", "ngeom", "nsite", "nsensordata", "nmocap")
-_TIME = int(mujoco.mjtState.mjSTATE_TIME)
 
 
 def run_simulations(
@@ -63,51 +64,99 @@ def run_batch(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     """
     # the models and their states at the start
     first = simulations[0]
-    many = batch.Batch(first.model, len(simulations), nthread=threads)
-    many.set_models([simulation.model for simulation in simulations])
-    for name in _STATE:
-        if getattr(first.data, name).size:
-            many.bind(name)[:] = [getattr(simulation.data, name) for simulation in simulations]
+    with raise_causes():
+        many = batch.Batch(first.model, len(simulations), nthread=threads)
+        many.set_models([simulation.model for simulation in simulations])
+        for name in _STATE:
+            if getattr(first.data, name).size:
+                many.bind(name)[:] = [getattr(simulation.data, name) for simulation in simulations]
 
-    # all steps
+    # all steps, block by block, between which Ctrl-C acts
+    stepping = _Stepping(many, simulations)
     started = time.perf_counter()
-    recorded = _recorders(first, len(simulations))
-    failures: dict[int, str] = {}
-    try:
-        many.rollout(first.steps, record=list(recorded), out=recorded)
-    except batch.SimulationError:
-        failures = {i: many.error(i) for i in range(len(simulations)) if many.error(i)}
+    done, size = 0, 1
+    while done < first.steps and len(stepping.failures) < len(simulations):
+        size = min(size, first.steps - done)
+        begun = time.perf_counter()
+        stepping.step(slice(done, done + size))
+        done += size
+        size = max(1, int(size * min(2.0, BLOCK_TIME / (time.perf_counter() - begun))))
     wall_time = (time.perf_counter() - started) / len(simulations)
 
     # what came of each
-    reasons = []
     for i, simulation in enumerate(simulations):
-        reason = failures.get(i, "") or _divergence(simulation, float(recorded[_TIME][i, -1, 0]))
-        if not reason:
-            trajectory = Trajectory(*(recorded[name][i] for name in Trajectory._fields))
-            simulation.replay(trajectory, wall_time)
-        reasons.append(reason)
-    return reasons
+        if i not in stepping.failures:
+            trajectory = Trajectory(*(values[i] for values in stepping.trajectories))
+            try:
+                simulation.replay(trajectory, wall_time)
+            except DivergenceError as error:
+                stepping.failures[i] = str(error)
+    return [stepping.failures.get(i, "") for i in range(len(simulations))]
 
 
-def _recorders(simulation: Simulation, count: int) -> dict[str | int, NDArray[Any]]:
-    """Room for the trajectories of a batch and for their times."""
-    leading = count, simulation.steps
-    recorders: dict[str | int, NDArray[Any]] = {}
-    for name in Trajectory._fields:
-        value = np.asarray(getattr(simulation.data, name))
-        kind = np.int32 if value.dtype.kind == "i" else np.float64
-        recorders[name] = np.zeros((*leading, *value.shape), kind)
-    recorders[_TIME] = np.zeros((*leading, 1))
-    return recorders
+class _Stepping:
+    """A batch on its way: what its simulations leave."""
+
+    def __init__(self, many: batch.Batch, simulations: Sequence[Simulation]) -> None:
+        self._batch, self._simulations = many, simulations
+        self._time = many.bind("time")
+        self.trajectories = self._make_trajectories(len(simulations), simulations[0].steps)
+        """Trajectories of all simulations, one after the other in each array."""
+        self.failures: dict[int, str] = {}
+        """Reasons of those that failed."""
+
+    def step(self, steps: slice) -> None:
+        """Take these steps with all simulations that have not failed."""
+        running = [i for i in range(len(self._simulations)) if i not in self.failures]
+        self._roll_out(running, steps)
+
+        # a warning of any kind makes MuJoCo leave one behind; it goes on as it would alone
+        timestep = self._simulations[0].model.opt.timestep
+        for i in running:
+            while i not in self.failures and round(self._time[i] / timestep) < steps.stop:
+                self._roll_out([i], slice(round(self._time[i] / timestep), steps.stop))
+
+    def _roll_out(self, numbers: Sequence[int], steps: slice) -> None:
+        """Take steps with some simulations, and keep what they leave."""
+        recorded = self._make_trajectories(len(numbers), steps.stop - steps.start)._asdict()
+        try:
+            self._batch.rollout(
+                steps.stop - steps.start, record=list(recorded), ids=numbers, out=recorded
+            )
+        except batch.SimulationError as error:
+            self.failures |= {int(i): _find_reason(self._batch.error(i)) for i in error.ids}
+        for name, values in recorded.items():
+            getattr(self.trajectories, name)[numbers, steps] = values
+
+        # bad values end one
+        for i in numbers:
+            if i not in self.failures and self._batch.warning[i, _BAD_VALUES, 1].any():
+                scene = self._simulations[i].scene
+                self.failures[i] = describe_divergence(scene, float(self._time[i]))
+
+    def _make_trajectories(self, count: int, steps: int) -> Trajectory:
+        """Room for the trajectories of some simulations over some steps."""
+        arrays = []
+        for name in Trajectory._fields:
+            value = np.asarray(getattr(self._simulations[0].data, name))
+            kind = np.int32 if value.dtype.kind == "i" else np.float64
+            arrays.append(np.zeros((count, steps, *value.shape), kind))
+        return Trajectory(*arrays)
 
 
-def _divergence(simulation: Simulation, end: float) -> str:
-    """The sentence that tells of a run whose time does not end where it should, or ''."""
-    timestep = simulation.model.opt.timestep
-    if abs(end - simulation.steps * timestep) < 0.5 * timestep:
-        return ""
-    return describe_divergence(simulation.scene, end)
+def _find_reason(told: str) -> str:
+    """The reason of a run that fails, from the message of the engine.
+
+    Raises:
+        BaseException: what says nothing of the run, as Ctrl-C does.
+        MemoryError: the memory ran out.
+    """
+    if "ould not allocate" in told:
+        raise MemoryError(told)
+    cause = find_cause(told)
+    if cause is not None and not isinstance(cause, BuoyancyError):
+        raise cause
+    return told if cause is None else str(cause)
 
 
 def _run_alone(simulation: Simulation) -> str:
@@ -115,8 +164,10 @@ def _run_alone(simulation: Simulation) -> str:
     try:
         for _ in simulation.frames():
             pass
-    except (DivergenceError, mujoco.FatalError) as error:
+    except DivergenceError as error:
         return str(error)
+    except mujoco.FatalError as error:
+        return _find_reason(str(error))
     return ""
 
 

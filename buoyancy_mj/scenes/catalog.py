@@ -90,4 +90,4 @@ def _find(
     raise error(
         f"there is no {kind} {describe(name)}, neither a file nor one that ships; "
         f"{choices(name, shipped)}"
-    )
+    ) from FileNotFoundError(name)

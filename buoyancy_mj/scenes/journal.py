@@ -2,37 +2,50 @@
 
 import contextlib
 import csv
+import io
 import os
-from collections.abc import Iterable, Mapping, Sequence
+import stat
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from buoyancy_mj.errors import SweepError
+from buoyancy_mj.files import lock, replace_file
 
 _TEXT_COLUMNS = ("scene", "status", "reason", "method")
 """Columns that hold texts; all others hold numbers."""
 
 
+class Table(NamedTuple):
+    """Rows of a file under its header."""
+
+    header: Sequence[str]
+    """The columns."""
+    rows: Sequence[Mapping[str, Any]]
+    """The rows."""
+
+
 class Journal:
     """Rows of finished runs in a CSV file, written as they come, and read when a sweep goes on.
+
+    While it is open, no other sweep writes the file.
 
     Args:
         path: the file.
         header: its columns.
         scene: a digest of what its runs have in common.
-        finished: rows that a finished sweep has left elsewhere.
+        table: a file of parquet that will hold the rows at the end, and may hold them already.
 
     Raises:
-        SweepError: the file holds something else, or cannot be written.
+        SweepError: another sweep is writing the file, it holds something else, or it cannot be
+            written.
     """
 
     def __init__(
-        self,
-        path: Path,
-        header: Sequence[str],
-        scene: str,
-        finished: Sequence[Mapping[str, Any]] = (),
+        self, path: Path, header: Sequence[str], scene: str, table: Path | None = None
     ) -> None:
+        self.path = path
+        """The file."""
         self.header = list(header)
         """The columns."""
         self.rows: dict[int, dict[str, str]] = {}
@@ -41,61 +54,79 @@ class Journal:
         if path.exists() and not path.is_file():
             raise SweepError(f"cannot keep results in '{path}': it is no file; give another --out")
         try:
-            # a line that a kill broke off does not count
-            content = path.read_bytes() if path.exists() else b""
-            complete = content[: content.rfind(b"\n") + 1]
-            rows = csv.DictReader(complete.decode().splitlines())
-            if complete or finished:
-                self._accept(path, rows.fieldnames or finished[0], [*rows, *finished], scene)
-
-            # new rows go to the end of the complete lines
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._file = path.open("r+" if path.exists() else "w", newline="")
-            self._file.truncate(len(complete))
-            self._file.seek(len(complete))
-        except (OSError, ValueError, TypeError, csv.Error) as error:
-            raise SweepError(f"cannot keep results in '{path}': {error}") from error
-        self._writer = csv.DictWriter(self._file, self.header)
-        if not complete:
-            self._writer.writeheader()
-            self._writer.writerows(finished)
-
-    def add(self, row: Mapping[str, Any]) -> None:
-        """Write one row."""
-        texts = _as_texts(row)
-        self._writer.writerow(texts)
-        self.rows[int(row["run"])] = texts
-
-    def save(self) -> None:
-        """Force the rows onto the disk.
-
-        Raises:
-            SweepError: it is full, or gone; rows that were saved before stay.
-        """
-        try:
-            self._file.flush()
-            os.fsync(self._file.fileno())
+            # a name that nobody gave may be a link to anything
+            self._file = _open_locked(path, follow=table is None)
+        except BlockingIOError as error:
+            raise SweepError(
+                f"another sweep is writing '{path}'; wait for its end, or give another --out"
+            ) from error
         except OSError as error:
             raise SweepError(
-                f"cannot keep results in '{self._path}': {error.strerror}; rows up to here are in "
-                "it, and the same command goes on from there"
+                f"cannot keep results in '{path}': {error.strerror}; give another --out"
             ) from error
+        self._size = 0
+        try:
+            self._begin(scene, table)
+        except BaseException:
+            self.close()
+            raise
+
+    def add(self, row: Mapping[str, Any]) -> None:
+        """Write one row, and force it onto the disk.
+
+        Raises:
+            SweepError: there is no space for it; the rows before it stay.
+        """
+        texts = _as_texts(row)
+        self._write(self._line(texts))
+        self.rows[int(row["run"])] = texts
+
+    @property
+    def state(self) -> str:
+        """Where the rows are and how the sweep goes on, for the end of a message."""
+        if not self.rows:
+            return "no run was done"
+        rows = f"{len(self.rows)} row{'' if len(self.rows) == 1 else 's'}"
+        return f"'{self.path}' holds {rows}, and the same command goes on from there"
 
     def close(self) -> None:
-        """Close the file; what could not be saved was told before."""
+        """Close the file; it is removed if it has no rows."""
         with contextlib.suppress(OSError):
-            self._file.close()
+            if self._size == len(self._line()) or os.fstat(self._file.fileno()).st_size == 0:
+                self.path.unlink()
+        self._file.close()
 
-    def _accept(
-        self, path: Path, header: Iterable[str], rows: Iterable[Mapping[str, Any]], scene: str
-    ) -> None:
-        """Take rows of earlier sweeps, if they are of this one."""
-        if list(header) != self.header:
+    def _begin(self, scene: str, table: Path | None) -> None:
+        """Take the rows of earlier sweeps, and cut off what a kill left of a last one."""
+        try:
+            content = self._file.readall()
+            text = content.decode()
+        except (OSError, UnicodeDecodeError) as error:
             raise SweepError(
-                f"'{path}' holds other columns than this sweep has; give another --out, "
+                f"cannot read the results in '{self.path}': {error}; give another --out, "
                 "or remove it"
-            )
-        for row in rows:
+            ) from error
+        complete = text[: text.rfind("\n") + 1]
+        if complete:
+            reader = csv.DictReader(io.StringIO(complete, newline=""))
+            self._accept(self.path, Table(reader.fieldnames or (), [*reader]), scene)
+            self._size = len(complete.encode())
+            self._cut()
+        elif not self._line().startswith(content):
+            self._refuse(self.path)
+        else:
+            finished = read_parquet(table) if table is not None else None
+            if table is not None and finished is not None:
+                self._accept(table, finished, scene)
+            self._cut()
+            self._write(self._line() + b"".join(map(self._line, self.rows.values())))
+
+    def _accept(self, path: Path, table: Table, scene: str) -> None:
+        """Take rows of earlier sweeps, if they are of this one."""
+        if list(table.header) != self.header:
+            self._refuse(path)
+        for row in table.rows:
             if row["scene"] != scene:
                 raise SweepError(
                     f"'{path}' holds runs of another scene, or with other flags; give another "
@@ -103,9 +134,40 @@ class Journal:
                 )
             self.rows[int(row["run"])] = _as_texts(row)
 
+    def _refuse(self, path: Path) -> None:
+        raise SweepError(
+            f"'{path}' holds other columns than this sweep has; give another --out, or remove it"
+        )
 
-def read_parquet(path: Path) -> list[dict[str, Any]]:
-    """Read the rows that a finished sweep has left; none if there is no file.
+    def _line(self, row: Mapping[str, str] | None = None) -> bytes:
+        """A row as a line of CSV; the header for None."""
+        text = io.StringIO(newline="")
+        csv.writer(text).writerow([row[name] for name in self.header] if row else self.header)
+        return text.getvalue().encode()
+
+    def _write(self, content: bytes) -> None:
+        """Append to the file and force it onto the disk; whole, or not at all."""
+        rest = memoryview(content)
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            self._cut()
+            raise SweepError(
+                f"cannot write to '{self.path}': {error.strerror}; {self.state}"
+            ) from error
+        self._size += len(content)
+
+    def _cut(self) -> None:
+        """Cut off what stands behind the last whole line."""
+        with contextlib.suppress(OSError):
+            self._file.truncate(self._size)
+            self._file.seek(self._size)
+
+
+def read_parquet(path: Path) -> Table | None:
+    """Read the rows that a finished sweep has left; None if there is no file.
 
     Raises:
         SweepError: the file cannot be read.
@@ -113,21 +175,21 @@ def read_parquet(path: Path) -> list[dict[str, Any]]:
     from pyarrow import ArrowException, parquet
 
     if not path.exists():
-        return []
+        return None
     try:
-        rows: list[dict[str, Any]] = parquet.read_table(path).to_pylist()
+        table = parquet.read_table(path)
     except (OSError, ArrowException) as error:
         raise SweepError(
             f"cannot read the results in '{path}': {error}; give another --out, or remove it"
         ) from error
-    return rows
+    return Table(table.column_names, table.to_pylist())
 
 
 def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequence[str]) -> None:
     """Write all rows as a table, numbers as numbers.
 
     Raises:
-        SweepError: the disk is full, or gone.
+        SweepError: it cannot be written; a file that was there stays.
     """
     import pyarrow as pa  # comes along with Rerun
     from pyarrow import parquet
@@ -139,15 +201,34 @@ def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequenc
             columns[name] = [*texts]
         else:
             columns[name] = [float(text) if text != "" else None for text in texts]
-    part = path.with_suffix(".partial.parquet")
     try:
-        parquet.write_table(pa.table(columns), part)
-        part.replace(path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise SweepError(
-            f"cannot write '{path}': {error}; all rows are kept, and the same command goes on"
-        ) from error
+        with replace_file(path) as part:
+            parquet.write_table(pa.table(columns), part)
+    except (OSError, pa.ArrowException) as error:
+        raise SweepError(f"cannot write '{path}': {error}") from error
+
+
+def _open_locked(path: Path, *, follow: bool) -> io.FileIO:
+    """Open a file to read and write, made if there is none, and lock it.
+
+    Args:
+        path: the file.
+        follow: whether it may be a link.
+    """
+    flags = os.O_RDWR | os.O_CREAT | (0 if follow else getattr(os, "O_NOFOLLOW", 0))
+    while True:
+        file = io.FileIO(os.open(path, flags, 0o666), "r+")
+        try:
+            lock(file.fileno(), path)
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise OSError(0, "it is no regular file")
+            # the one who had it may just have removed it
+            if path.exists() and os.path.samestat(path.stat(), os.fstat(file.fileno())):
+                return file
+        except BaseException:
+            file.close()
+            raise
+        file.close()
 
 
 def _as_texts(row: Mapping[str, Any]) -> dict[str, str]:

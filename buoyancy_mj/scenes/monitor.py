@@ -6,10 +6,12 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
+from scipy.spatial import ConvexHull, QhullError
 
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.scenes.fleet import Vehicle
+from buoyancy_mj.scenes.summary import VehicleSummary
 from buoyancy_mj.scenes.trajectory import Poses
 from buoyancy_mj.sea.water import Water
 
@@ -19,18 +21,11 @@ class Monitor:
 
     Args:
         model: the model in which the vehicle moves.
-        bodies: indices of the vehicle's bodies.
-        hulls: the vehicle's hulls.
+        vehicle: the vehicle.
         water: the sea.
     """
 
-    def __init__(
-        self,
-        model: mujoco.MjModel,
-        bodies: NDArray[np.int64],
-        hulls: Sequence[Hull],
-        water: Water,
-    ) -> None:
+    def __init__(self, model: mujoco.MjModel, vehicle: Vehicle, water: Water) -> None:
         self.draft = math.nan
         """Depth of the lowest point of the hulls in the last poses [m]; negative above water."""
         self.peak_draft = -math.inf
@@ -40,30 +35,60 @@ class Monitor:
         self.first_contact: float | None = None
         """Time of the first of them [s]."""
         self._water = water
-        self._bodies = bodies
-        self._masses = model.body_mass[bodies]
+        amplitude, kx, ky, *_ = water.rows.T
+        self._curvature = float(np.abs(amplitude) @ (kx * kx + ky * ky))
+        self._vehicle = vehicle
         self._heights: list[tuple[float, float]] = []
 
         # the deepest point of a body is a corner of one of its convex hulls
-        self._corners = [
-            (body, _convex_corners(hulls, body)) for body in sorted({hull.body for hull in hulls})
-        ]
+        hulls = vehicle.hulls
+        self._corners = []
+        for body in sorted({hull.body for hull in hulls}):
+            corners = _convex_corners(hulls, body)
+            radius = float(np.linalg.norm(corners, axis=1).max())
+            self._corners.append((body, corners, radius))
 
         # pairs of geoms of which one is the vehicle's and the other is fixed
         fixed = ~find_moving_bodies(model)[model.geom_bodyid]
-        vehicle = np.isin(model.geom_bodyid, bodies)
-        self._touches = fixed[:, None] & vehicle[None, :]
+        own = np.isin(model.geom_bodyid, vehicle.bodies)
+        self._touches = fixed[:, None] & own[None, :]
         self._touches |= self._touches.T
 
     def add_poses(self, poses: Poses, time: float) -> None:
         """Keep the draft and the height of the centre of gravity in poses at a time [s]."""
-        self.draft = max(
-            float(self._water.depth(_move(corners, poses, body), time).max())
-            for body, corners in self._corners
-        )
+        points = self._find_deep_corners(poses, time)
+        self.draft = float(self._water.depth(points, time).max())
         self.peak_draft = max(self.peak_draft, self.draft)
-        height = self._masses @ poses.xipos[self._bodies, 2] / self._masses.sum()
+        vehicle = self._vehicle
+        height = vehicle.masses @ poses.xipos[vehicle.bodies, 2] / vehicle.mass
         self._heights.append((time, float(height)))
+
+    def _find_deep_corners(self, poses: Poses, time: float) -> NDArray[np.float64]:
+        """Corners (n, 3) [m] in the world frame that can be deepest at a time [s], few of all.
+
+        Within a radius the surface leaves its tangent plane by no more than half its greatest
+        curvature times the square of the radius.
+        """
+        origin = poses.xpos[self._vehicle.root]
+        down = np.array([0.0, 0.0, -1.0])
+        if self._curvature > 0.0:
+            down[:2] = self._water.slope(origin[0], origin[1], time)
+
+        # depths under the tangent plane, up to a constant
+        depths, reach = [], 0.0
+        for body, corners, radius in self._corners:
+            arm = poses.xpos[body] - origin
+            depths.append(corners @ (down @ poses.xmat[body].reshape(3, 3)) + down @ arm)
+            reach = max(reach, radius + math.hypot(*arm))
+
+        # those that may lie under the surface as deep as the deepest
+        least = max(float(depth.max()) for depth in depths) - self._curvature * reach**2 - 1e-9
+        return np.concatenate(
+            [
+                _move(corners[depth >= least], poses, body)
+                for (body, corners, _), depth in zip(self._corners, depths, strict=True)
+            ]
+        )
 
     def add_contacts(self, data: mujoco.MjData, time: float) -> None:
         """Count the step that ended at a time [s] if the vehicle touched something fixed in it."""
@@ -73,6 +98,20 @@ class Monitor:
             if self.first_contact is None:
                 self.first_contact = time
 
+    def summary(self, start: float) -> VehicleSummary:
+        """The run so far; the range of heights is taken from a time [s] on."""
+        vehicle = self._vehicle
+        return VehicleSummary(
+            mass=vehicle.mass,
+            displacement=vehicle.displacement,
+            net_weight=vehicle.weight - vehicle.displacement * vehicle.gravity,
+            peak_draft=self.peak_draft,
+            final_draft=self.draft,
+            cog_z_range=self.height_range(start),
+            contact_steps=self.contact_steps,
+            first_contact=self.first_contact,
+        )
+
     def height_range(self, start: float) -> float:
         """Highest less lowest centre of gravity [m] from a time [s] on; NaN without poses."""
         heights = [height for time, height in self._heights if time >= start - 1e-9]
@@ -81,8 +120,14 @@ class Monitor:
 
 def _convex_corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:
     """Vertices (n, 3) [m] of the convex hulls of a body's hulls, in its frame."""
-    meshes = [hull.mesh_in_body for hull in hulls if hull.body == body]
-    return np.vstack([mesh.vertices[ConvexHull(mesh.vertices).vertices] for mesh in meshes])
+    corners = []
+    for vertices in (hull.mesh_in_body.vertices for hull in hulls if hull.body == body):
+        try:
+            corners.append(vertices[ConvexHull(vertices).vertices])
+        except QhullError:
+            # so thin that it has no convex hull
+            corners.append(vertices)
+    return np.vstack(corners)
 
 
 def _move(points: NDArray[np.float64], poses: Poses, body: int) -> NDArray[np.float64]:

@@ -34,7 +34,7 @@ def apply_setting(table: dict[str, Any], setting: str) -> None:
     key = read_text(SceneError, "the key of a setting", key.strip())
     value = parse_value(text, key)
     *path, last = key.split(".")
-    if ".".join(path) in _VECTORS:
+    if _is_vector(path):
         _add_vector(table, path)
 
     # the table or list that holds the value
@@ -53,10 +53,18 @@ def apply_setting(table: dict[str, Any], setting: str) -> None:
         )
 
 
+def _is_vector(path: list[str]) -> bool:
+    """Whether a path leads to a vector, of the scene or of one of its vehicles."""
+    of_vehicle = path[2:] if path[:1] == ["vehicles"] else path
+    return ".".join(of_vehicle) in _VECTORS
+
+
 def _add_vector(table: dict[str, Any], path: list[str]) -> None:
     """Add a vector of zeros at the end of a path, where there is none."""
     *above, name = path
-    holder = table.setdefault(above[0], {}) if above else table
+    holder: Any = table
+    for depth, part in enumerate(above):
+        holder = _step(holder, part, ".".join(above[: depth + 1]))
     if isinstance(holder, dict):
         holder.setdefault(name, [0.0, 0.0, 0.0])
 

@@ -10,6 +10,15 @@ import mujoco
 from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.scenes.overrides import apply_setting
+from buoyancy_mj.scenes.scene_vehicle import (
+    SceneVehicle,
+    Start,
+    check_masses,
+    name_from_file,
+    name_vehicles,
+    read_inner_tables,
+    vehicles_from_tables,
+)
 from buoyancy_mj.settings.config import SELECTION
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.tables import build
@@ -18,70 +27,33 @@ from buoyancy_mj.settings.toml import (
     damping_from_table,
     method_from_table,
     selection_from_table,
-    table_of,
     water_from_table,
 )
-from buoyancy_mj.values import read_array, set_number
+from buoyancy_mj.values import set_number
 
-EQUILIBRIUM = "equilibrium"
-"""Value of `Start.at`."""
 INTEGRATORS = {
     name.removeprefix("mjINT_").lower(): integrator
     for name, integrator in mujoco.mjtIntegrator.__members__.items()
 }
 """MuJoCo's integrators by lower-case name."""
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class Start:
-    """Pose and velocity of the vehicle at the start.
-
-    Raises:
-        SceneError: a value that is no finite number, or a vector that is not of three.
-    """
-
-    position: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Position of the vehicle's root body (3,) [m], world frame."""
-    roll: float = 0.0
-    """Angle about the root body's x axis [rad]."""
-    pitch: float = 0.0
-    """Angle about the root body's y axis, bow down [rad]."""
-    yaw: float = 0.0
-    """Angle about the vertical [rad]; the vehicle turns by yaw first, then pitch, then roll."""
-    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Velocity of the root body (3,) [m/s], world frame."""
-    angular_velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Angular velocity of the root body (3,) [rad/s], in its own frame."""
-    keyframe: str | None = None
-    """Keyframe of the vehicle for its joints and controls; the pose stays that of the start."""
-    at: str | None = None
-    """'equilibrium' starts at rest on still water, which is sought downhill from the attitude here;
-    horizontal position and yaw stay."""
-
-    def __post_init__(self) -> None:
-        if self.at not in (None, EQUILIBRIUM):
-            raise SceneError(
-                f"start.at is {describe(self.at)}; possible: {EQUILIBRIUM}, or leave it out"
-            )
-        for name in ("roll", "pitch", "yaw"):
-            set_number(self, SceneError, name)
-        for name in ("position", "velocity", "angular_velocity"):
-            vector = read_array(SceneError, name, getattr(self, name), (3,))
-            object.__setattr__(self, name, tuple(vector.tolist()))
+_FILLED_IN = ("stem", "text", "folder")
+"""Fields of a scene that its reader fills in; they are no keys."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Scene(Settings):
-    """A vehicle, its start and its duration, beside the settings of its water.
+    """A vehicle or several, their start and a duration, beside the settings of their water.
 
     Raises:
-        SceneError: a value out of its range.
+        SceneError: a value out of its range, no vehicle, or names of vehicles that make no sense.
     """
 
     title: str
     """Title of the scene, one line."""
-    vehicle: str
+    vehicle: str | None = None
     """MJCF or URDF file of the vehicle, or the name of a model that ships."""
+    vehicles: tuple[SceneVehicle, ...] = ()
+    """Several vehicles instead of the one, each with its own start and masses."""
     environment: str | None = None
     """MJCF file of the surroundings, or the name of an environment that ships."""
     duration: float = 5.0
@@ -102,6 +74,8 @@ class Scene(Settings):
     bodies; None keeps the masses of its file."""
     cog_shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Shift of the centre of gravity of the vehicle's root body, in its frame (3,) [m]."""
+    stem: str = ""
+    """Name of the scene's file, or of the vehicle that a setting put into it, for recordings."""
     text: str = ""
     """The scene as TOML text, for the record."""
     folder: Path = Path()
@@ -115,19 +89,57 @@ class Scene(Settings):
             ("record_rate", 1e-6, 1e5),
         ):
             set_number(self, SceneError, name, least=least, most=most)
-        if self.mass is not None:
-            set_number(self, SceneError, "mass", above=0.0)
-        shift = read_array(SceneError, "cog_shift", self.cog_shift, (3,))
-        object.__setattr__(self, "cog_shift", tuple(shift.tolist()))
+        check_masses(self)
+        self._check_vehicles()
+        object.__setattr__(self, "vehicles", name_vehicles(self.vehicles))
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(
                 f"unknown integrator '{self.integrator}'; "
                 f"{choices(self.integrator.lower(), INTEGRATORS)}"
             )
 
+    @property
+    def entries(self) -> tuple[SceneVehicle, ...]:
+        """The vehicles, one or several, each with its start and its masses."""
+        if self.vehicle is None:
+            return self.vehicles
+        alone = SceneVehicle(
+            model=self.vehicle, name=name_from_file(self.vehicle), **self._values_of_the_one()
+        )
+        return (alone,)
+
+    def _check_vehicles(self) -> None:
+        """Refuse no vehicle, two ways to give them, and values of the one beside several."""
+        if self.vehicle is None and not self.vehicles:
+            raise SceneError(
+                "'vehicle' is missing; needed is a text in quotes, or several tables [[vehicles]]"
+            )
+        if self.vehicle is not None and self.vehicles:
+            raise SceneError(
+                f"vehicle is '{self.vehicle}' beside [[vehicles]] "
+                f"({', '.join(vehicle.model for vehicle in self.vehicles)}); leave one of the two "
+                "out, or put another model in the place of one, as vehicles.0.model"
+            )
+        if self.vehicles:
+            defaults = {field.name: field.default for field in dataclasses.fields(Scene)}
+            for key, value in self._values_of_the_one().items():
+                if value != defaults[key]:
+                    raise SceneError(
+                        f"{key} is given beside [[vehicles]]; give it to one of them, "
+                        f"as vehicles.0.{key}"
+                    )
+
+    def _values_of_the_one(self) -> dict[str, Any]:
+        """What the scene says of its one vehicle, by key."""
+        return {
+            field.name: getattr(self, field.name)
+            for field in dataclasses.fields(SceneVehicle)
+            if field.name not in ("model", "name")
+        }
+
 
 KEYS = (
-    *(f.name for f in dataclasses.fields(Scene) if f.name not in ("text", "folder", "selection")),
+    *(f.name for f in dataclasses.fields(Scene) if f.name not in (*_FILLED_IN, "selection")),
     *SELECTION,
 )
 """Keys of a scene's file."""
@@ -150,21 +162,34 @@ def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
     except (OSError, ValueError) as error:
         raise SceneError(f"cannot read scene '{path}': {error}") from error
     table = parse_toml(text, f"scene '{path}'")
+    stem = path.stem
+    vehicle, title = table.get("vehicle"), table.get("title")
     for setting in settings:
         apply_setting(table, setting)
+
+    # another vehicle calls itself, and its recordings, by its own name
+    if isinstance(table.get("vehicle"), str) and table["vehicle"] != vehicle:
+        stem = name_from_file(table["vehicle"])
+        if table.get("title") == title:
+            table["title"] = f"{stem} in the scene {path.stem}"
     header = "".join(f"# with {setting}\n" for setting in settings)
     where = f"scene '{path.stem}'"
-    return scene_from_table(table, where=where, text=header + text, folder=path.parent)
+    return scene_from_table(table, where=where, stem=stem, text=header + text, folder=path.parent)
 
 
 def scene_from_table(
-    table: Mapping[str, Any], where: str = "scene", text: str = "", folder: Path = Path()
+    table: Mapping[str, Any],
+    where: str = "scene",
+    stem: str = "",
+    text: str = "",
+    folder: Path = Path(),
 ) -> Scene:
     """Make the scene that a table of plain values describes, as TOML has them.
 
     Args:
         table: the keys of a scene's file, `KEYS`, and their values.
         where: what errors call the table.
+        stem: name of the scene's file.
         text: the table as TOML text, for the record.
         folder: where relative paths in the table start.
 
@@ -172,19 +197,14 @@ def scene_from_table(
         SceneError: an unknown key, a missing one, or a value that makes no sense.
     """
     plain = dict(table)
-    fields: dict[str, Any] = {"text": text, "folder": folder}
+    fields: dict[str, Any] = {"stem": stem, "text": text, "folder": folder}
 
     # tables in the table
     fields["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
-    start = table_of(plain.pop("start", {}), f"{where}: start")
-    fields["start"] = build(Start, start, f"{where}: start")
+    fields |= read_inner_tables(plain, where)
+    fields["vehicles"] = vehicles_from_tables(plain.pop("vehicles", []), where)
     fields["damping"] = damping_from_table(plain.pop("damping", True), f"{where}: damping")
     fields["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
-    if "coefficients" in plain:
-        place = f"{where}: coefficients"
-        fields["coefficients"] = build(
-            CoefficientsFile, table_of(plain.pop("coefficients"), place), place
-        )
 
     # the fields of the selection stand among those of the scene
     patterns = {key: plain.pop(key) for key in SELECTION if key in plain}

@@ -1,8 +1,8 @@
 """`Simulation`: run a scene frame by frame."""
 
+import functools
 import math
 import time
-import warnings
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, nullcontext
 
@@ -11,17 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.engine.c_functions import raise_causes
+from buoyancy_mj.engine.callbacks import PASSIVE
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
-from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
-from buoyancy_mj.scenes.divergence import check_finite
-from buoyancy_mj.scenes.frames import LAST, Energy, Frame, Summary
+from buoyancy_mj.scenes.divergence import Limits
+from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles, warn_of_contact
+from buoyancy_mj.scenes.frames import Frame, take_only
 from buoyancy_mj.scenes.monitor import Monitor
+from buoyancy_mj.scenes.observer import Observer
 from buoyancy_mj.scenes.scene import Scene
+from buoyancy_mj.scenes.summary import LAST, Summary
 from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
-from buoyancy_mj.statics.vessel import PLAUSIBLE
 
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
@@ -31,19 +35,22 @@ class Simulation(ReadOnly):
 
     Args:
         scene: what to run.
+        through: where the water's forces enter; by 'qfrc_passive' the water is a part of the model,
+            by 'xfrc_applied' a callback, see `Buoyancy.installed`.
 
     Raises:
         ModelError, MeshError, SceneError: what `assemble` and `Buoyancy` raise; also a vehicle
             whose displacement is absurd for its mass.
+        EngineError: there is no such `through`.
 
     Example:
         `drafts = [frame.draft for frame in Simulation(read_scene(path)).frames()]`
     """
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, *, through: str = PASSIVE) -> None:
         self.scene = scene
         """The scene."""
-        self.model, self.data, bodies = assemble(scene, with_water=True)
+        self.model, self.data, afloat = assemble(scene, with_water=through == PASSIVE)
         # a diverging simulation ends with an error, and is not set back to its start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
         self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -57,40 +64,62 @@ class Simulation(ReadOnly):
             self._lend_water = nullcontext
         else:
             self.buoyancy = Buoyancy(self.model, scene)
-            self._lend_water = self.buoyancy.installed
+            self._lend_water = functools.partial(self.buoyancy.installed, through=through)
 
-        # the vehicle
-        floating = self.buoyancy.floating
-        self.vehicle = floating[floating < bodies]
-        """Indices of the vehicle's bodies, without what floats in the environment."""
-        self.hulls = tuple(hull for hull in self.buoyancy.hulls if hull.body < bodies)
-        """The vehicle's hulls."""
-        if not self.hulls:
-            raise ModelError("the vehicle displaces no water; choose geoms of its own (--geoms)")
-        self._masses = self.model.body_mass[self.vehicle]
-        self.mass = float(self._masses.sum())
-        """Mass of the vehicle [kg]."""
-        self.weight = self.mass * self.buoyancy.gravity
-        """Weight of the vehicle [N]."""
-        self.displacement = float(
-            scene.water.density * sum(hull.displaced_volume for hull in self.hulls)
-        )
-        """Mass of water that the vehicle's hulls displace when fully under water [kg]."""
-        self.root = int(self.model.body_rootid[self.hulls[0].body])
-        """Index of the vehicle's root body."""
-        _check_scale(self.mass, self.displacement)
-        _warn_of_second_drag(self.model, scene)
+        # the vehicles
+        self.vehicles = build_vehicles(self.model, self.buoyancy, afloat)
+        """What floats of the scene's vehicles, by name; surroundings are none of them."""
+
+        # the poses at the start
+        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        with raise_causes():
+            self._frame_data = mujoco.MjData(self.model)
+            self._copy_state()
+            mujoco.mj_fwdPosition(self.model, self._frame_data)
+        warn_of_contact(self.model, self._frame_data, self.vehicles)
+        self._limits = Limits(scene, self.model, self._frame_data)
 
         # what a run leaves
-        self._monitor = Monitor(self.model, self.vehicle, self.hulls, scene.water)
+        self._monitors = {
+            name: Monitor(self.model, vehicle, scene.water)
+            for name, vehicle in self.vehicles.items()
+        }
+        self._observers = {
+            name: Observer(self.model, vehicle, self._monitors[name], scene.water)
+            for name, vehicle in self.vehicles.items()
+        }
         self._wall_time = 0.0
-        self._frame_data = mujoco.MjData(self.model)
-        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
 
         # compile what a fresh installation has not compiled, before the clock runs
-        mujoco.mj_forward(self.model, self._frame_data)
+        with self._lend_water(), raise_causes():
+            mujoco.mj_forward(self.model, self._frame_data)
         scene.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The only vehicle; an error that names them where there are several."""
+        return take_only(self.vehicles)
+
+    @property
+    def hulls(self) -> tuple[Hull, ...]:
+        """The hulls of the only vehicle."""
+        return self.vehicle.hulls
+
+    @property
+    def mass(self) -> float:
+        """Mass of the only vehicle [kg]."""
+        return self.vehicle.mass
+
+    @property
+    def weight(self) -> float:
+        """Weight of the only vehicle [N]."""
+        return self.vehicle.weight
+
+    @property
+    def displacement(self) -> float:
+        """Mass of water that the only vehicle's hulls displace when fully under water [kg]."""
+        return self.vehicle.displacement
 
     @property
     def steps(self) -> int:
@@ -101,7 +130,8 @@ class Simulation(ReadOnly):
         """Run the scene; a frame at time 0, then at the record rate, and one at the end.
 
         Raises:
-            DivergenceError: a position, velocity or acceleration left the finite numbers.
+            DivergenceError: a position, velocity or acceleration left the finite numbers, or all
+                reason: see `Limits`.
         """
         started = time.perf_counter()
         yield self._frame()
@@ -121,16 +151,20 @@ class Simulation(ReadOnly):
         """Take one timestep with the water acting.
 
         Raises:
-            DivergenceError: a position, velocity or acceleration left the finite numbers.
+            DivergenceError: a position, velocity or acceleration left the finite numbers, or all
+                reason: see `Limits`.
+            KeyboardInterrupt: Ctrl-C, also while Python code submerges.
         """
-        with self._lend_water():
+        with self._lend_water(), raise_causes():
             mujoco.mj_step(self.model, self.data)
-        check_finite(self.scene, self.model, self.data)
 
         # a step leaves the poses of its beginning
         now = float(self.data.time)
-        self._monitor.add_poses(poses_of(self.data), now - self.model.opt.timestep)
-        self._monitor.add_contacts(self.data, now)
+        before = now - self.model.opt.timestep
+        self._limits.check_data(self.data, before)
+        for monitor in self._monitors.values():
+            monitor.add_poses(poses_of(self.data), before)
+            monitor.add_contacts(self.data, now)
 
     def replay(self, trajectory: Trajectory, wall_time: float) -> None:
         """Take over a whole run that was stepped elsewhere, for the summary.
@@ -138,23 +172,33 @@ class Simulation(ReadOnly):
         Args:
             trajectory: what the run left.
             wall_time: time that it took [s].
+
+        Raises:
+            DivergenceError: a body has left all reason.
         """
         timestep = self.model.opt.timestep
 
         # each step; contacts are found anew, from the coordinates at its beginning
         starts = np.vstack([self.data.qpos[None], trajectory.qpos])
         for step, poses in enumerate(trajectory.poses):
-            self._monitor.add_poses(poses, step * timestep)
+            now = step * timestep
+            self._limits.check_poses(poses, now)
+            for monitor in self._monitors.values():
+                monitor.add_poses(poses, now)
             if trajectory.ncon[step]:
                 self._frame_data.qpos[:] = starts[step]
                 mujoco.mj_fwdPosition(self.model, self._frame_data)
-                self._monitor.add_contacts(self._frame_data, (step + 1) * timestep)
+                for monitor in self._monitors.values():
+                    monitor.add_contacts(self._frame_data, now + timestep)
 
         # the end
         self.data.qpos[:] = trajectory.qpos[-1]
         self.data.time = len(trajectory.qpos) * timestep
         mujoco.mj_fwdPosition(self.model, self.data)
-        self._monitor.add_poses(poses_of(self.data), float(self.data.time))
+        poses = poses_of(self.data)
+        self._limits.check_poses(poses, float(self.data.time))
+        for monitor in self._monitors.values():
+            monitor.add_poses(poses, float(self.data.time))
         self._wall_time = wall_time
 
     def summary(self) -> Summary:
@@ -163,89 +207,40 @@ class Simulation(ReadOnly):
         return Summary(
             scene=self.scene.title,
             method=self.scene.method.name,
-            mass=self.mass,
-            displacement=self.displacement,
-            net_weight=self.weight - self.displacement * self.buoyancy.gravity,
-            peak_draft=self._monitor.peak_draft,
-            final_draft=self._monitor.draft,
-            cog_z_range=self._monitor.height_range(end - LAST),
+            vehicles={
+                name: monitor.summary(end - LAST) for name, monitor in self._monitors.items()
+            },
             simulated_time=end,
             wall_time=self._wall_time,
             real_time_factor=end / self._wall_time if self._wall_time else math.nan,
-            contact_steps=self._monitor.contact_steps,
-            first_contact=self._monitor.first_contact,
         )
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """Centre of mass (3,) [m] of the vehicle, world frame."""
-        centre: NDArray[np.float64] = self._masses @ data.xipos[self.vehicle] / self.mass
-        return centre
+        """Centre of mass (3,) [m] of the only vehicle, world frame."""
+        return self.vehicle.centre_of_mass(data)
 
     def _frame(self) -> Frame:
         """The present, on other data: mj_forward on the running data would disturb the run."""
         # poses and loads at exactly this time
         data = self._frame_data
-        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        mujoco.mj_setState(self.model, data, self._state, _STATE)
-        with self._lend_water():
+        self._copy_state()
+        with self._lend_water(), raise_causes():
             mujoco.mj_forward(self.model, data)
         now = float(data.time)
+        self._limits.check_data(data, now)
         loads = self.buoyancy.loads(data)
-        self._monitor.add_poses(poses_of(data), now)
-
-        # what they mean
-        water = self.scene.water
-        centre = self.centre_of_mass(data)
-        lifted = water.depth(loads.hull.centroid, now)
+        for monitor in self._monitors.values():
+            monitor.add_poses(poses_of(data), now)
         return Frame(
             time=now,
             data=data,
             loads=loads,
-            centre_of_mass=centre,
-            attitude=_roll_pitch_yaw(data.xmat[self.root]),
-            draft=self._monitor.draft,
-            elevation=float(water.elevation(centre[0], centre[1], now)),
-            energy=Energy(
-                kinetic=float(data.energy[1]),
-                potential=float(data.energy[0]),
-                buoyancy=float(np.nansum(loads.hull.force[:, 2] * lifted)),
-            ),
+            vehicles={
+                name: observer.observe(data, loads) for name, observer in self._observers.items()
+            },
         )
 
-
-def _check_scale(mass: float, displacement: float) -> None:
-    """Refuse a slip of units, which gives a hull a thousand million times its volume."""
-    lowest, highest = PLAUSIBLE
-    if not lowest <= displacement / mass <= highest:
-        raise ModelError(
-            f"the vehicle weighs {mass:.4g} kg and would displace {displacement:.4g} kg of water; "
-            "check the scale of its meshes (a mesh drawn in millimetres wants "
-            "scale='0.001 0.001 0.001')"
-        )
-
-
-def _warn_of_second_drag(model: mujoco.MjModel, scene: Scene) -> None:
-    """Warn of a model that sets MuJoCo's own fluid, whose drag adds to the scene's."""
-    density = model.opt.density
-    viscosity = model.opt.viscosity
-    if scene.damping is None or not (density > 0.0 or viscosity > 0.0):
-        return
-    option = f"density='{density:g}'" if density > 0.0 else f"viscosity='{viscosity:g}'"
-    warnings.warn(
-        f"the vehicle sets <option {option}>: MuJoCo's own fluid drag acts as well as ours; "
-        "leave one out (damping = false in the scene)",
-        BuoyancyWarning,
-        stacklevel=3,
-    )
-
-
-def _roll_pitch_yaw(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angles (3,) [rad] of a rotation (9,): first yaw about z, then pitch about y, then roll."""
-    r = rotation.reshape(3, 3)
-    return np.array(
-        [
-            math.atan2(r[2, 1], r[2, 2]),
-            -math.asin(max(-1.0, min(1.0, r[2, 0]))),
-            math.atan2(r[1, 0], r[0, 0]),
-        ]
-    )
+    def _copy_state(self) -> None:
+        """Copy the state of the run to the data of frames."""
+        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
+        mujoco.mj_setState(self.model, self._frame_data, self._state, _STATE)

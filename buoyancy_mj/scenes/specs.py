@@ -1,38 +1,71 @@
 """MJCF and URDF files, read and compiled; errors keep MuJoCo's message and say how to mend it."""
 
 import os
+import urllib.parse
+from collections.abc import Mapping
 from pathlib import Path
 
 import mujoco
 
-from buoyancy_mj.engine.c_functions import pop_error
-from buoyancy_mj.errors import BuoyancyError, ModelError
+from buoyancy_mj.engine.c_functions import find_cause
+from buoyancy_mj.errors import ModelError
+from buoyancy_mj.scenes.mesh_files import FORMATS, read_mesh_files
+from buoyancy_mj.scenes.urdf import is_urdf, read_urdf
 
 _PACKAGE_SCHEMES = ("package://", "model://")
 """How URDF names the files of ROS packages, and of Gazebo's models."""
-_MENDS = {
-    "inertia": (
-        "a body that floats needs mass and inertia: give it an <inertial>, or bound them by "
-        "<compiler boundmass boundinertia>"
+_FILE_SCHEME = "file://"
+"""How URDF names other files."""
+_MENDS: Mapping[str, tuple[str, str]] = {
+    "mass and inertia of moving bodies": (
+        "a body that floats needs mass and inertia: give it an <inertial>, or bound them by ",
+        'boundmass="0.001" boundinertia="1e-08"',
     ),
-    "ASCII": "save the mesh as a binary STL or as OBJ",
+    "A + B >= C": (
+        "no body has two moments of inertia that are together less than the third: correct them, "
+        "or let MuJoCo level them by ",
+        'balanceinertia="true"',
+    ),
+    "could not find decoder for resource": (
+        "MuJoCo reads MJCF (.xml) and URDF (.urdf); a xacro is expanded by: xacro FILE > NAME.urdf",
+        "",
+    ),
+    "no decoder found for mesh": (
+        f"MuJoCo reads STL, OBJ and MSH, and {', '.join(FORMATS)} are read here: save it as STL",
+        "",
+    ),
 }
-"""What to do about a refusal, by a word in the compiler's message."""
+"""What to do about a refusal, and the option of MuJoCo's compiler that does it, by words of its
+message."""
 
 
 def read_spec(path: Path) -> mujoco.MjSpec:
-    """Read an MJCF or URDF file without compiling it, and find its files in ROS packages.
+    """Read an MJCF or URDF file without compiling it, with meshes that MuJoCo does not read.
+
+    Files of ROS packages are found. Meshes in the formats of `mesh_files.FORMATS`, and STL as text,
+    are read here. Visual geoms are kept, whatever `discardvisual` says: they may displace water.
 
     Raises:
-        ModelError: MuJoCo cannot read the file, with MuJoCo's own message; or a package is missing.
+        ModelError: MuJoCo cannot read the file, with MuJoCo's own message; a package is missing; or
+            a mesh cannot be read.
     """
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
+        spec = read_urdf(path) if is_urdf(path) else mujoco.MjSpec.from_file(str(path))
     except Exception as error:
-        raise ModelError(f"MuJoCo cannot read '{path}': {_one_line(error)}") from error
+        message = _one_line(error)
+        raise ModelError(
+            f"MuJoCo cannot read '{path}': {message}{_find_mend(message, path)}"
+        ) from error
+
+    # a body without collision geometry displaces water by what is drawn of it
+    spec.compiler.discardvisual = False
+
     for asset in spec.meshes:
         if asset.file.startswith(_PACKAGE_SCHEMES):
             asset.file = str(_find_in_package(asset.file, path))
+        elif asset.file.startswith(_FILE_SCHEME):
+            asset.file = urllib.parse.unquote(asset.file.removeprefix(_FILE_SCHEME))
+    read_mesh_files(spec, path)
     return spec
 
 
@@ -42,31 +75,46 @@ def compile_spec(spec: mujoco.MjSpec, path: Path) -> mujoco.MjModel:
     Raises:
         ModelError: MuJoCo refuses it. Its own message is kept, with a mend where there is one.
         BuoyancyError: the water in the model refuses it.
+        KeyboardInterrupt: Ctrl-C, while the water is made.
     """
-    pop_error()
     try:
         return spec.compile()
     except ValueError as error:
-        # MuJoCo passes on a refusal of the water as a text; the error itself waits here
-        refusal = pop_error()
-        if isinstance(refusal, BuoyancyError):
-            raise refusal from None
+        # MuJoCo passes on what the water raises as a text; the error itself waits here
+        cause = find_cause(error)
+        if cause is not None:
+            raise cause from None
         message = _one_line(error)
-        mend = next((f"; {mend}" for word, mend in _MENDS.items() if word in message), "")
-        raise ModelError(f"MuJoCo cannot compile '{path}': {message}{mend}") from error
+        raise ModelError(
+            f"MuJoCo cannot compile '{path}': {message}{_find_mend(message, path)}"
+        ) from error
 
 
-def attach_spec(spec: mujoco.MjSpec, path: Path, other: Path, prefix: str) -> None:
-    """Attach the file `other` to the world of a spec, with `prefix` before all its names.
+def attach_spec(
+    spec: mujoco.MjSpec, path: Path, other: mujoco.MjSpec, other_path: Path, prefix: str
+) -> None:
+    """Attach the spec `other` to the world of a spec, with `prefix` before all its names.
 
     Raises:
-        ModelError: MuJoCo cannot read `other`, or cannot join it to `path`, the file of the spec.
+        ModelError: MuJoCo cannot join them; the paths name them in the message.
     """
-    other_spec = read_spec(other)
     try:
-        spec.attach(other_spec, prefix=prefix, frame=spec.worldbody.add_frame())
+        spec.attach(other, prefix=prefix, frame=spec.worldbody.add_frame())
     except ValueError as error:
-        raise ModelError(f"MuJoCo cannot join '{other}' to '{path}': {_one_line(error)}") from error
+        raise ModelError(
+            f"MuJoCo cannot join '{other_path}' to '{path}': {_one_line(error)}"
+        ) from error
+
+
+def _find_mend(message: str, path: Path) -> str:
+    """What to do about a message of MuJoCo's compiler, in the words of the file; '' if unknown."""
+    for words, (mend, option) in _MENDS.items():
+        if words in message:
+            compiler = f"<compiler {option}/>" if option else ""
+            if option and is_urdf(path):
+                compiler = f"<mujoco>{compiler}</mujoco> in the <robot>"
+            return f"; {mend}{compiler}"
+    return ""
 
 
 def _one_line(error: Exception) -> str:

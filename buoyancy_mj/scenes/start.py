@@ -1,44 +1,51 @@
-"""The state of a scene at time 0: the vehicle at its start, or at rest on still water."""
+"""The state of a scene at time 0: each vehicle at its start, or at rest on still water."""
 
 import dataclasses
 import warnings
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import BuoyancyWarning, SceneError, choices
+from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.names import body_name
-from buoyancy_mj.scenes.scene import Scene, Start
-from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.hulls.tethers import list_roots
+from buoyancy_mj.scenes.parts import Part
+from buoyancy_mj.scenes.scene import Scene
+from buoyancy_mj.scenes.scene_vehicle import ENVIRONMENT, Start
+from buoyancy_mj.statics.building import build_vessel_from_hulls
 from buoyancy_mj.statics.equilibrium import find_equilibrium
 
 
-def place_vehicle(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodies: int) -> None:
-    """Set the state of the vehicle at time 0.
+def place_vehicle(model: mujoco.MjModel, data: mujoco.MjData, part: Part) -> None:
+    """Set the state of a vehicle at time 0.
 
     The first free body takes the pose of the start, and takes the others along as if all were one
     rigid body.
 
     Args:
-        model: a model whose first `bodies` bodies are the world and the vehicle.
+        model: a model that holds the vehicle.
         data: receives the state.
-        start: pose and velocity of the vehicle.
-        bodies: how many.
+        part: what came from the vehicle's file, and its start.
 
     Raises:
         SceneError: the start names a keyframe that does not exist.
     """
+    start = part.entry.start
     if start.keyframe is not None:
-        _reset_to_keyframe(model, data, start.keyframe)
-    free = np.flatnonzero(
-        (model.jnt_type == mujoco.mjtJoint.mjJNT_FREE) & (model.jnt_bodyid < bodies)
-    )
-    if not len(free):
+        _take_keyframe(model, data, part, start.keyframe)
+    free = [
+        joint
+        for joint in np.flatnonzero(model.jnt_type == mujoco.mjtJoint.mjJNT_FREE).tolist()
+        if model.jnt_bodyid[joint] in part.bodies
+    ]
+    if not free:
         if dataclasses.replace(start, keyframe=None) != Start():
             warnings.warn(
-                "the vehicle hangs on joints of its own and has no free one; the position, "
+                f"{part.subject} hangs on joints of its own and has no free one; the position, "
                 "attitude and velocity of the start were not applied",
                 BuoyancyWarning,
                 stacklevel=4,
@@ -63,21 +70,53 @@ def place_vehicle(model: mujoco.MjModel, data: mujoco.MjData, start: Start, bodi
         data.qvel[v + 3 : v + 6] = turned.inv().apply(spin)
 
 
-def settle_vehicle(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: int) -> None:
-    """Bring each floating tree of the vehicle, the first `bodies` of the model, to rest."""
-    hulls = find_hulls(model, scene.selection, range(1, bodies))
-    for root in dict.fromkeys(int(model.body_rootid[hull.body]) for hull in hulls):
-        name = body_name(model, root)
-        vessel = build_vessel(model, scene.water, data.qpos, body=name, selection=scene.selection)
+def settle_vehicle(
+    model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, bodies: Sequence[int]
+) -> None:
+    """Bring each vessel of a vehicle, whose bodies these are, to rest on still water.
+
+    What welds and connects hold together moves as one.
+    """
+    hulls = find_hulls(model, scene.selection)
+    with_hulls = [hull.body for hull in hulls if hull.body in bodies]
+    for group in group_floating_bodies(model):
+        if not np.isin(group, with_hulls).any():
+            continue
+        root = body_name(model, list_roots(model, group)[0])
+        vessel = build_vessel_from_hulls(model, hulls, scene.water, data.qpos, body=root)
         data.qpos[:] = find_equilibrium(vessel).qpos
 
 
-def _reset_to_keyframe(model: mujoco.MjModel, data: mujoco.MjData, keyframe: str) -> None:
-    """Take joints and controls from a keyframe of the vehicle."""
-    names = [model.key(i).name for i in range(model.nkey)]
-    if keyframe not in names:
+def _take_keyframe(model: mujoco.MjModel, data: mujoco.MjData, part: Part, keyframe: str) -> None:
+    """Take the joints, controls and mocap bodies of a vehicle from one of its keyframes."""
+    names = {str(model.key(i).name): i for i in range(model.nkey)}
+    own = {
+        name.removeprefix(part.prefix): key
+        for name, key in names.items()
+        if name.startswith(part.prefix) and not name.startswith(f"{ENVIRONMENT}/")
+    }
+    if keyframe not in own:
         raise SceneError(
-            f"start: the vehicle has no keyframe '{keyframe}'; {choices(keyframe, names)}"
+            f"start: {part.subject} has no keyframe '{keyframe}'; {choices(keyframe, own)}"
         )
-    mujoco.mj_resetDataKeyframe(model, data, names.index(keyframe))
-    data.time = 0.0
+    key = own[keyframe]
+
+    # joints
+    is_own_joint = np.isin(model.jnt_bodyid, part.bodies)
+    sizes = np.diff(np.append(model.jnt_qposadr, model.nq))
+    is_own_qpos = np.repeat(is_own_joint, sizes)
+    is_own_dof = np.isin(model.dof_bodyid, part.bodies)
+    data.qpos[is_own_qpos] = model.key_qpos[key, is_own_qpos]
+    data.qvel[is_own_dof] = model.key_qvel[key, is_own_dof]
+
+    # controls
+    is_own_actuator = np.isin(np.arange(model.nu), part.actuators)
+    is_own_act = np.repeat(is_own_actuator, model.actuator_actnum)
+    data.ctrl[is_own_actuator] = model.key_ctrl[key, is_own_actuator]
+    data.act[is_own_act] = model.key_act[key, is_own_act]
+
+    # mocap bodies
+    mocap = model.body_mocapid[part.bodies]
+    own_mocap = mocap[mocap >= 0]
+    data.mocap_pos[own_mocap] = model.key_mpos[key].reshape(-1, 3)[own_mocap]
+    data.mocap_quat[own_mocap] = model.key_mquat[key].reshape(-1, 4)[own_mocap]

@@ -3,26 +3,32 @@
 import dataclasses
 import functools
 import hashlib
-from collections.abc import Iterator, Mapping, Sequence
+import warnings
+from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from buoyancy_mj.errors import BuoyancyError, SceneError, SceneTypeError, SweepError
+from buoyancy_mj.errors import (
+    BuoyancyError,
+    BuoyancyWarning,
+    SceneError,
+    SceneTypeError,
+    SweepError,
+)
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.batches import run_simulations
-from buoyancy_mj.scenes.frames import Summary
-from buoyancy_mj.scenes.journal import Journal, read_parquet, write_parquet
+from buoyancy_mj.scenes.journal import Journal, write_parquet
 from buoyancy_mj.scenes.scene import Scene, read_scene
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.summary import list_values
 
 BATCH_SIZE = 64
 """Most runs in a batch: a sweep that is killed loses no more."""
-_SUMMARY = tuple(
-    field.name
-    for field in dataclasses.fields(Summary)
-    if field.name not in ("scene", "wall_time", "real_time_factor")
-)
-"""Fields of the summary that become columns."""
+_NO_COLUMNS = ("scene", "wall_time", "real_time_factor")
+"""Values of the summary that become no columns: a digest stands for the scene, and time varies."""
+_OF_FILES = ("MuJoCo cannot read", "Error opening file", "ould not allocate")
+"""Words of errors that have to do with files or memory, and not with the values of a run."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,46 +71,67 @@ class Sweep:
 
         Raises:
             SceneError: a key that the scene does not have.
-            SweepError: the file of the results holds something else, or cannot be written.
+            SweepError: the file of the results holds something else, another sweep is writing it,
+                or it cannot be written; a file that a run needs cannot be read, or the memory runs
+                out. What is done stays, and is not run again.
         """
         # parquet cannot grow row by row: a journal stands beside it until all is done
         is_parquet = self.out.suffix == ".parquet"
         path = self.out.with_suffix(".partial.csv") if is_parquet else self.out
-        finished = read_parquet(self.out) if is_parquet and not path.exists() else []
-        journal = Journal(path, self._header, self._digest, finished)
-
-        # rows of earlier sweeps, then new ones
+        journal = Journal(path, self._header, self._digest, self.out if is_parquet else None)
         try:
             self._check_rows(path, journal.rows)
             self._check_keys()
             yield from journal.rows.values()
-            missing = [run for run in range(len(self.values)) if run not in journal.rows]
-            for start in range(0, len(missing), BATCH_SIZE):
-                for row in self._run_batch(missing[start : start + BATCH_SIZE], threads):
-                    journal.add(row)
-                    journal.save()
-                    yield journal.rows[int(row["run"])]
+            for row in self._run_missing(journal.rows, threads):
+                journal.add(row)
+                yield journal.rows[int(row["run"])]
+
+            # the whole table
+            if is_parquet:
+                rows = [journal.rows[run] for run in sorted(journal.rows)]
+                write_parquet(self.out, rows, journal.header)
+                path.unlink()
+        except (MemoryError, _UntriedError) as error:
+            reason = str(error) or "the memory ran out"
+            raise SweepError(f"the sweep stopped: {reason}; {journal.state}") from error
         finally:
             journal.close()
-
-        # the whole table
-        if is_parquet:
-            rows = [journal.rows[run] for run in sorted(journal.rows)]
-            write_parquet(self.out, rows, journal.header)
-            path.unlink()
 
     @property
     def _header(self) -> list[str]:
         """Columns of the results."""
-        summary = [name for name in _SUMMARY if name not in self.keys]
-        return ["run", "scene", *self.keys, "status", "reason", *summary]
+        return ["run", "scene", *self.keys, "status", "reason", *self._results]
+
+    @functools.cached_property
+    def _results(self) -> list[str]:
+        """Columns of the summary; a sweep with several vehicles has NAME.column for each."""
+        names = list_values(self._name_vehicles())
+        return [name for name in names if name not in (*_NO_COLUMNS, *self.keys)]
+
+    def _name_vehicles(self) -> list[str]:
+        """Names of the vehicles, as in the first run that can be assembled."""
+        names = [""]
+        for run in range(len(self.values)):
+            try:
+                scene = self._read_scene(run)
+                names = [str(entry.name) for entry in scene.entries]
+                with warnings.catch_warnings():
+                    # the run itself will give them
+                    warnings.simplefilter("ignore", BuoyancyWarning)
+                    return [group.name for group in assemble(scene).afloat]
+            except BuoyancyError:
+                # the row of that run will say why
+                continue
+        return names
 
     @functools.cached_property
     def _digest(self) -> str:
         """A short text of all that the runs have in common."""
         scene = read_scene(self.path, self.settings)
-        vehicle = catalog.model_path(scene.vehicle, scene.folder)
-        common = repr((self.path.read_bytes(), vehicle.read_bytes(), self.settings, self.keys))
+        models = [catalog.model_path(entry.model, scene.folder) for entry in scene.entries]
+        files = [path.read_bytes() for path in (self.path, *models)]
+        common = repr((*files, self.settings, self.keys))
         return f"{self.path.stem} {hashlib.blake2b(common.encode(), digest_size=4).hexdigest()}"
 
     def _check_rows(self, path: Path, rows: Mapping[int, Mapping[str, str]]) -> None:
@@ -133,16 +160,20 @@ class Sweep:
         )
         return read_scene(self.path, [*self.settings, *varied])
 
-    def _run_batch(self, runs: Sequence[int], threads: int) -> Iterator[dict[str, Any]]:
-        """Run some runs to their ends; a row for each."""
-        simulations: dict[int, Simulation] = {}
-        for run in runs:
-            try:
-                simulations[run] = Simulation(self._read_scene(run))
-            except BuoyancyError as error:
-                yield self._row(run, reason=str(error))
-        for run, reason in run_simulations(simulations, threads):
-            yield self._row(run, simulations[run], reason)
+    def _run_missing(self, done: Container[int], threads: int) -> Iterator[dict[str, Any]]:
+        """Run what is not done, batch by batch; a row for each run."""
+        missing = [run for run in range(len(self.values)) if run not in done]
+        for start in range(0, len(missing), BATCH_SIZE):
+            simulations: dict[int, Simulation] = {}
+            for run in missing[start : start + BATCH_SIZE]:
+                try:
+                    simulations[run] = Simulation(self._read_scene(run))
+                except BuoyancyError as error:
+                    if not _is_of_values(error):
+                        raise _UntriedError(str(error)) from error
+                    yield self._row(run, reason=str(error))
+            for run, reason in run_simulations(simulations, threads):
+                yield self._row(run, simulations[run], reason)
 
     def _row(
         self, run: int, simulation: Simulation | None = None, reason: str = ""
@@ -152,8 +183,20 @@ class Sweep:
             "run": run,
             "scene": self._digest,
             "status": "failed" if reason else "done",
-            "reason": reason,
+            "reason": " ".join(reason.split()),
         }
         row |= dict(zip(self.keys, self.values[run], strict=True))
-        results = dataclasses.asdict(simulation.summary()) if simulation and not reason else {}
-        return row | {name: results.get(name) for name in _SUMMARY if name not in self.keys}
+        results = simulation.summary().values() if simulation and not reason else {}
+        return row | {name: results.get(name) for name in self._results}
+
+
+class _UntriedError(Exception):
+    """A run that could not be tried, whatever its values."""
+
+
+def _is_of_values(error: BaseException) -> bool:
+    """Whether an error may be due to the values of a run, and not to files or memory."""
+    if isinstance(error, (OSError, MemoryError)) or any(words in str(error) for words in _OF_FILES):
+        return False
+    cause = error.__cause__
+    return cause is None or _is_of_values(cause)

@@ -1,4 +1,4 @@
-"""A vehicle's file, ready for a scene: free, with gravity, without water and dry land."""
+"""A vehicle's file, ready for a scene: free, with gravity, without water."""
 
 import warnings
 from pathlib import Path
@@ -9,53 +9,32 @@ import numpy as np
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
 from buoyancy_mj.scenes.specs import compile_spec, read_spec
+from buoyancy_mj.scenes.urdf import add_missing_inertia, is_urdf
 
-_PLANE = mujoco.mjtGeom.mjGEOM_PLANE
 _NO_GRAVITY = int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
-_LEVEL_COSINE = 0.95
-"""Cosine of the slope up to which a plane counts as level ground."""
 
 
 def read_vehicle(path: Path) -> mujoco.MjSpec:
-    """Read a vehicle's file without compiling it, and make it ready for the water of a scene.
+    """Read a vehicle's file, and make it ready for the water of a scene.
 
     The vehicle gets a free joint if it has none, gravity if it is without, and loses the water that
-    its file brings.
+    its file brings. Links of a URDF without inertia get the smallest sound one. Where the file has
+    MuJoCo fuse bodies that cannot move, they are fused.
 
     Raises:
         ModelError: MuJoCo refuses the file, or it has no body that could float.
     """
     spec = read_spec(path)
     _add_free_joint(spec, path)
+    if is_urdf(path):
+        add_missing_inertia(spec)
     _turn_gravity_on(spec)
     _remove_water(spec)
+
+    # the compiler fuses bodies in the spec itself, which then has those of the model
+    if spec.compiler.fusestatic:
+        compile_spec(spec, path)
     return spec
-
-
-def remove_dry_land(spec: mujoco.MjSpec, path: Path, level: float) -> None:
-    """Remove level ground of the vehicle's file that lies at the water's level [m] or above it.
-
-    Such ground would keep the water out.
-    """
-    planes = [geom for geom in spec.worldbody.geoms if geom.type == _PLANE]
-    if not planes:
-        return
-
-    # the compiler knows which way planes face, however that is written
-    model = compile_spec(spec.copy(), path)
-    indices = np.flatnonzero((model.geom_bodyid == 0) & (model.geom_type == _PLANE))
-    normal = np.empty(3)
-    for plane, geom in zip(planes, indices, strict=True):
-        mujoco.mju_rotVecQuat(normal, np.array([0.0, 0.0, 1.0]), model.geom_quat[geom])
-        height = model.geom_pos[geom, 2]
-        if normal[2] > _LEVEL_COSINE and height >= level - 1e-9:
-            warnings.warn(
-                f"the vehicle's ground plane '{plane.name}' at z = {height:g} m would keep out "
-                f"the water at {level:g} m and was left out",
-                BuoyancyWarning,
-                stacklevel=4,
-            )
-            spec.delete(plane)
 
 
 def _add_free_joint(spec: mujoco.MjSpec, path: Path) -> None:

@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 
 from buoyancy_mj.errors import BuoyancyError, MethodError, ModelError, WaterError, describe
-from buoyancy_mj.hulls.selection import Selection
+from buoyancy_mj.hulls.selection import Selection, join_words, split_words
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.sea.currents import Current
 from buoyancy_mj.sea.water import Water
@@ -29,7 +29,10 @@ WATER = tuple(field.name for field in dataclasses.fields(Water))
 SELECTION = tuple(field.name for field in dataclasses.fields(Selection))
 """Keys that choose geoms: the fields of `Selection`."""
 KEYS = (*WATER, "method", "pressure", "damping", "added_mass", *SELECTION)
-"""All keys of the plugin."""
+"""All keys of the plugin that hold settings."""
+INSTANCE = "instance"
+"""Key that holds the name of the instance where `add_water` put it. If the model has another name
+for it, the instance was attached under a prefix, and is the water of what came with it."""
 _LENGTHS = ("frequency", "period", "wavelength")
 """Fields of a regular wave of which any one gives the others."""
 
@@ -54,7 +57,9 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
     words = {key: text.strip() for key, text in texts.items() if text.strip()}
     method = parse_table(words.get("method", "exact"), f"{where}: method")
     damping = _parse_damping(words.get("damping", "true"), f"{where}: damping")
-    selection = {key: words[key].replace(",", " ").split() for key in SELECTION if key in words}
+    selection = {
+        key: split_words(words[key], f"{where}: {key}") for key in SELECTION if key in words
+    }
     return Settings(
         water=water_from_table(_parse_water(words, where), where),
         method=method_from_table(method, f"{where}: method"),
@@ -93,7 +98,7 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         "pressure": settings.pressure,
         "damping": _format_damping(settings.damping),
         "added_mass": settings.added_mass or "none",
-        **{key: " ".join(getattr(settings.selection, key) or ()) for key in SELECTION},
+        **{key: join_words(getattr(settings.selection, key) or ()) for key in SELECTION},
     }
     return {key: text for key, text in texts.items() if text}
 

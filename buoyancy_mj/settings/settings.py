@@ -8,9 +8,8 @@ from numpy.typing import ArrayLike
 
 from buoyancy_mj.errors import MethodError, ModelError, WaterError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
-from buoyancy_mj.loads.added_mass import SOURCES
+from buoyancy_mj.loads.added_mass import check_source
 from buoyancy_mj.loads.damping import Damping, Panels
-from buoyancy_mj.loads.matrices import parse_matrix
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.methods import Method, parse_method
@@ -27,7 +26,7 @@ class Settings:
     of the water. A scene has them beside its vehicle, and the plugin keeps them as texts.
 
     Raises:
-        WaterError, ModelError: a water, a damping, a selection or an added mass of another kind.
+        WaterError, ModelError: a water, a damping, an added mass or a selection of another kind.
         MethodError: an unknown method or pressure; or a pressure, or damping, that needs another
             method.
 
@@ -70,7 +69,7 @@ class Settings:
                 f"selection is {describe(self.selection)}; "
                 "it must be Selection(geoms=..., hull=..., fill=...)"
             )
-        _check_added_mass(self.added_mass)
+        check_source(self.added_mass)
 
         # names
         object.__setattr__(self, "method", parse_method(self.method))
@@ -92,21 +91,6 @@ class Settings:
                 f"drag by panels needs the method 'exact', not '{self.method.name}', "
                 "which knows no triangles"
             )
-
-
-def _check_added_mass(source: object) -> None:
-    """Refuse what is no source of added mass; which bodies there are is known with the model.
-
-    Raises:
-        ModelError: it is none, or a matrix that is none.
-    """
-    if isinstance(source, Mapping):
-        for body, matrix in source.items():
-            parse_matrix(matrix, f"the added mass of body '{body}'")
-    elif source is not None and (not isinstance(source, str) or source not in SOURCES):
-        raise ModelError(
-            f"added mass is {describe(source)}; {choices(source, SOURCES)}, or matrices by body"
-        )
 
 
 class Options(TypedDict, total=False):

@@ -9,7 +9,8 @@ import mujoco
 from numpy.typing import ArrayLike
 
 from buoyancy_mj.errors import BallastError, BuoyancyWarning, ModelError, choices
-from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, Selection
+from buoyancy_mj.hulls.scopes import find_scope
+from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, Selection, add_geom
 from buoyancy_mj.meshes.overlaps import find_close_pairs, measure_overlaps
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
@@ -115,8 +116,8 @@ def ballast(
 
     Raises:
         BallastError: the sites cannot do it; the message says what they could.
-        ModelError: neither draft nor reserve is given, or both are; a number makes no sense; or see
-            `statics.building.build_vessel`.
+        ModelError: neither draft nor reserve is given, or both are; a number makes no sense; joints
+            or a weld hold the vessel; or see `statics.building.build_vessel`.
         MeshError: a mesh bounds no volume.
 
     Example:
@@ -124,6 +125,7 @@ def ballast(
     """
     _check_numbers(draft, reserve, (heel, trim, bg), (mass_density, foam_density))
     vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel.check_free()
     pose = _pose_at_target(vessel, draft, heel, trim)
 
     # the sites, less those where foam lifts less than it weighs
@@ -237,6 +239,10 @@ def _add_item(spec: mujoco.MjSpec, root: mujoco.MjsBody, item: BallastItem) -> N
         conaffinity=0,
         mass=0.0,
     )
-    for text in spec.texts:
-        if text.name.rsplit("/", 1)[-1] == CUSTOM_TEXTS["geoms"]:
-            text.data = f"{text.data} {item.label}"
+
+    # whichever choice of geoms its name belongs to
+    texts = [(find_scope(text.name, CUSTOM_TEXTS["geoms"]), text) for text in spec.texts]
+    mine = [(scope, text) for scope, text in texts if scope and scope.has(item.label)]
+    if mine:
+        scope, text = max(mine, key=lambda pair: pair[0].length)
+        text.data = add_geom(text.data, scope.own_name(item.label))

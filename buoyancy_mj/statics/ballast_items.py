@@ -59,7 +59,7 @@ def merge_sites(
             if (site.kind, site.name) == (kind, name)
         ]
         mass = sum(share for _, share in shares)
-        if mass > NEGLIGIBLE * vessel.mass:
+        if mass > NEGLIGIBLE * vessel.whole_mass:
             middle = sum((share / mass * site.point for site, share in shares), np.zeros(3))
             first, _ = shares[0]
             position = middle + vessel.centre_of_gravity
@@ -74,12 +74,18 @@ def add_items(vessel: Vessel, items: Sequence[BallastItem]) -> Vessel:
     points = [item.position - vessel.centre_of_gravity for item in items]
     pairs = list(zip(items, points, strict=True))
 
-    # mass, and inertia about the new centre of gravity
-    mass = vessel.mass + sum(item.mass for item in items)
-    shift = sum((item.mass * point for item, point in pairs), np.zeros(3)) / mass
-    inertia = vessel.inertia + vessel.mass * steiner(shift)
+    # how far the centre of gravity goes; what weighs nothing has none, and keeps that of its mass
+    added = sum(item.mass for item in items)
+    moment = sum((item.mass * point for item, point in pairs), np.zeros(3))
+    mass = vessel.mass + added
+    shift = moment / mass if mass else np.zeros(3)
+
+    # the centre of mass, and inertia about it
+    whole = vessel.whole_mass
+    centre = (whole * vessel.centre_of_mass + moment) / (whole + added)
+    inertia = vessel.inertia + whole * steiner(vessel.centre_of_mass - centre)
     for item, point in pairs:
-        inertia = inertia + item.mass * steiner(point - shift) + item.inertia * np.eye(3)
+        inertia = inertia + item.mass * steiner(point - centre) + item.inertia * np.eye(3)
 
     # hulls and sites from the new centre of gravity, and the balls that displace
     hulls = [dataclasses.replace(hull, position=hull.position - shift) for hull in vessel.hulls] + [
@@ -91,6 +97,7 @@ def add_items(vessel: Vessel, items: Sequence[BallastItem]) -> Vessel:
         vessel,
         mass=mass,
         inertia=inertia,
+        centre_of_mass=centre - shift,
         centre_of_gravity=vessel.centre_of_gravity + shift,
         position=vessel.position + vessel.rotation @ shift,
         hulls=tuple(hulls),

@@ -52,8 +52,8 @@ def find_least_masses(
     # nothing is missing
     missing, moments = equations.targets[0], equations.targets[1:]
     if (
-        np.abs(missing) <= NEGLIGIBLE * vessel.mass
-        and np.abs(moments).max() <= NEGLIGIBLE * vessel.mass * vessel.radius
+        np.abs(missing) <= NEGLIGIBLE * vessel.whole_mass
+        and np.abs(moments).max() <= NEGLIGIBLE * vessel.whole_mass * vessel.radius
     ):
         return np.zeros(len(sites))
     if not sites:

@@ -1,63 +1,96 @@
-"""Whether two rest poses of a vessel are one: they differ by heading, or by a free roll alone."""
+"""Which rest poses of a vessel are one: it turns from one to the other, and nothing resists."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from buoyancy_mj.statics.balance import SEARCH_ANGLE, tilt, tilt_stiffness
+from buoyancy_mj.statics.balance import tilt, tilt_stiffness
 from buoyancy_mj.statics.floating_pose import FloatingPose
 
-_SAME_ENERGY = 1e-6
-"""Difference of energy over weight times radius of poses that count as level with each other."""
-_SOFT = 1e-2
-"""Stiffness, over that of the other axis or over weight times radius, that resists no roll."""
+FREE = 5e-4
+"""Stiffness over weight times radius below which a turn counts as free.
+
+A cylinder with 24 sides resists with 2e-4, a ball of 5120 facets with 5e-5."""
+_NEARBY = 0.5 * math.pi
+"""Angle between two poses up to which a way from one to the other is sought [rad]."""
+_STRIDE = 0.04
+"""Stride on that way [rad]."""
 
 
-def is_same_pose(one: FloatingPose, two: FloatingPose) -> bool:
-    """Whether two rest poses differ by heading alone, or by a roll without resistance, as a log."""
-    scale = one.vessel.weight * one.vessel.radius
-    level = _SAME_ENERGY * scale
-    if abs(one.energy - two.energy) > level:
-        return False
-    if _angle_between(one, two) < 1e-4:
-        return True
+def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
+    """Group rest poses that differ by heading alone, or by a roll that nothing resists.
 
-    # a ball rolls every way, a log one way
-    soft, stiff = np.linalg.eigvalsh(tilt_stiffness(one))
-    if stiff < _SOFT * scale:
-        return True
-    if soft >= _SOFT * stiff:
-        return False
-    return any(
-        abs(pose.energy - one.energy) <= level and _angle_between(pose, two) <= SEARCH_ANGLE
-        for direction in (1.0, -1.0)
-        for pose in _roll_along_valley(one, direction)
-    )
+    Two poses are one if the energy on the way from the higher to the lower stays below that of a
+    turn with a stiffness of `FREE`, or if they are so with others between them that lie no higher:
+    round a log, or all over a ball. A pose that nothing holds counts with that to which it falls.
+
+    Args:
+        poses: rest poses of one vessel (n).
+
+    Returns:
+        The number of the group of each (n,).
+    """
+    ups = np.array([pose.rotation[2] for pose in poses])
+    groups = np.arange(len(poses))
+    lowest = np.array([pose.energy for pose in poses])
+
+    # the nearest first, whose way is the shortest
+    ones, others = np.triu_indices(len(poses), 1)
+    cosines = (ups @ ups.T)[ones, others]
+    for k in np.argsort(-cosines, kind="stable"):
+        if cosines[k] < math.cos(_NEARBY):
+            break
+        i, j = ones[k], others[k]
+        floor = max(lowest[groups[i]], lowest[groups[j]])
+        if groups[i] != groups[j] and _turns_freely(poses[i], poses[j], floor):
+            lowest[groups[i]] = min(lowest[groups[i]], lowest[groups[j]])
+            groups[groups == groups[j]] = groups[i]
+    return groups
 
 
-def _roll_along_valley(pose: FloatingPose, direction: float) -> Iterator[FloatingPose]:
-    """Roll about the softest axis, the stiff one kept in balance, once round or until it rises."""
-    highest = pose.energy + _SAME_ENERGY * pose.vessel.weight * pose.vessel.radius
-    axis = direction * np.linalg.eigh(tilt_stiffness(pose))[1][:, 0]
-    for _ in range(math.ceil(2.0 * math.pi / SEARCH_ANGLE)):
-        pose = tilt(pose, SEARCH_ANGLE * axis)
+def _turns_freely(one: FloatingPose, two: FloatingPose, floor: float) -> bool:
+    """Whether nothing resists a turn from the higher of two poses to the lower.
 
-        # back to the bottom of the valley, by two Newton steps across it
-        for _ in range(2):
-            values, axes = np.linalg.eigh(tilt_stiffness(pose))
-            across = axes[:, 1]
-            if values[1] > 0.0:
-                pose = tilt(pose, across * (across @ pose.torque / values[1]))
+    Args:
+        one: a rest pose.
+        two: another.
+        floor: energy of the poses that they stand for [J]; the higher of them lies no higher.
+    """
+    start, goal = (one, two) if one.energy >= two.energy else (two, one)
+    angle = _angle_between(start, goal)
+    free = 0.5 * FREE * start.vessel.weight * start.vessel.radius
+    pose = start
+    for _ in range(math.ceil(2.0 * angle / _STRIDE) + 1):
+        rise = free * _angle_between(start, pose) ** 2
+        if pose.energy > min(start.energy + rise, floor + free * angle**2):
+            return False
+        if _angle_between(pose, goal) <= _STRIDE:
+            return True
 
-        # onward, not back
-        axis = axes[:, 0] * np.copysign(1.0, axes[:, 0] @ axis)
-        yield pose
-        if pose.energy > highest:
-            return
+        # on towards the goal, whose vertical leans that way, and down square to that
+        lean = (pose.rotation @ goal.rotation[2])[:2]
+        lean /= np.linalg.norm(lean)
+        pose = tilt(pose, _STRIDE * np.array([lean[1], -lean[0]]))
+        pose = _descend(pose, lean)
+    return False
+
+
+def _descend(pose: FloatingPose, axis: NDArray[np.float64]) -> FloatingPose:
+    """Turn about a horizontal axis (2,) alone, by Newton steps, to the bottom of a valley."""
+    for _ in range(3):
+        stiffness = axis @ tilt_stiffness(pose) @ axis
+        if stiffness <= 0.0:
+            break
+        turn = float(np.clip(axis @ pose.torque / stiffness, -_STRIDE, _STRIDE))
+        pose = tilt(pose, turn * axis)
+        if abs(turn) < 0.01 * _STRIDE:
+            break
+    return pose
 
 
 def _angle_between(one: FloatingPose, two: FloatingPose) -> float:
     """Angle between the verticals of two poses, each seen from the vessel [rad]."""
-    a, b = one.rotation[2], two.rotation[2]
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
+    chord = float(np.linalg.norm(one.rotation[2] - two.rotation[2]))
+    return 2.0 * math.asin(min(1.0, 0.5 * chord))

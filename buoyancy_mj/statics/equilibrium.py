@@ -1,28 +1,32 @@
 """`equilibrium` and `equilibria`: where a vessel comes to rest, and whether it stays there."""
 
 import dataclasses
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.building import build_vessel
-from buoyancy_mj.statics.distinct_poses import is_same_pose
+from buoyancy_mj.statics.descent import find_balance
+from buoyancy_mj.statics.distinct_poses import group_poses
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
+from buoyancy_mj.statics.lows import find_lows
 from buoyancy_mj.statics.vessel import Vessel
 
 INDIFFERENT = 1e-3
 """Part of the largest eigenvalue below which an eigenvalue counts as zero.
 
 The period of such a motion is thirty times the shortest."""
+
+_LEVEL = 1e-6
+"""Difference of energy over weight times radius of poses that are level with each other."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -130,16 +134,23 @@ def find_equilibrium(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
 
 def find_equilibria(vessel: Vessel) -> tuple[Equilibrium, ...]:
     """Find all poses in which a vessel stays at rest, lowest energy first; see `equilibria`."""
-    poses: list[FloatingPose] = []
-    result: list[Equilibrium] = []
-    for down in trimesh.creation.icosphere(subdivisions=1).vertices:
-        start, _ = Rotation.align_vectors([[0.0, 0.0, -1.0]], [down])
-        pose, iterations = find_balance(vessel, start.as_matrix())
-        rest = _describe(pose, iterations)
-        if rest.stability != "unstable" and not any(is_same_pose(one, pose) for one in poses):
-            poses.append(pose)
-            result.append(rest)
-    return tuple(sorted(result, key=lambda rest: rest.energy))
+    found = [find_balance(vessel, low.rotation) for low in find_lows(vessel)]
+    groups = group_poses([pose for pose, _ in found])
+    rests = []
+    for group in np.unique(groups):
+        members = [found[i] for i in np.flatnonzero(groups == group)]
+        rests.append(_describe(*_choose_nearest(vessel, members)))
+    return tuple(sorted(rests, key=lambda rest: rest.energy))
+
+
+def _choose_nearest(
+    vessel: Vessel, found: Sequence[tuple[FloatingPose, int]]
+) -> tuple[FloatingPose, int]:
+    """Choose the pose nearest to the attitude of a vessel, of those as low as the lowest."""
+    lowest = min(pose.energy for pose, _ in found)
+    highest = lowest + _LEVEL * vessel.weight * vessel.radius
+    level = [(pose, steps) for pose, steps in found if pose.energy <= highest]
+    return max(level, key=lambda entry: float(entry[0].rotation[2] @ vessel.rotation[2]))
 
 
 def move_to_rest(vessel: Vessel, rest: Equilibrium) -> Vessel:

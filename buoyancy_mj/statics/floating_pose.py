@@ -1,6 +1,7 @@
 """`FloatingPose`: a vessel in one pose on still water, with its weight and its buoyancy."""
 
 import dataclasses
+import functools
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,8 +46,25 @@ class FloatingPose:
     """From the centre of gravity to the centre of buoyancy (3,) [m], world axes; zero when dry."""
     wetted_area: float
     """Area under the surface [m^2]."""
-    waterplane: Waterplane
-    """What the surface cuts out of the hulls."""
+    waterplane_area: float
+    """Area cut out of the surface [m^2]; of flooded hulls, the part that displaces."""
+
+    @functools.cached_property
+    def waterplane(self) -> Waterplane:
+        """What the surface cuts out of the hulls."""
+        vessel = self.vessel
+        frames = _place_hulls(vessel, self.position, self.rotation)
+        rows = vessel.packed.waterplanes(*frames, self.position)
+
+        # those of all hulls as one
+        area, x, y, xx, xy, yy = rows[:, INTEGRALS].sum(axis=0)
+        return Waterplane(
+            area=float(area),
+            first_moments=np.array([x, y]),
+            second_moments=np.array([[xx, xy], [xy, yy]]),
+            low=rows[:, LOWEST].min(axis=0),
+            high=rows[:, HIGHEST].max(axis=0),
+        )
 
     @property
     def draft(self) -> float:
@@ -107,35 +125,29 @@ def pose_vessel(vessel: Vessel, position: ArrayLike, rotation: ArrayLike) -> Flo
     """
     origin = np.asarray(position, float)
     world_from_vessel = np.ascontiguousarray(rotation, float)
-    positions = origin + vessel.hull_positions @ world_from_vessel.T
-    rotations = (world_from_vessel @ vessel.hull_rotations).reshape(-1, 9)
+    wet = vessel.packed.submerge(*_place_hulls(vessel, origin, world_from_vessel), 0.0)
 
     # volume, and the way to its centroid
-    wet = vessel.packed.submerge(positions, rotations, 0.0)
     volumes = wet[:, clip.VOLUME]
     volume = float(volumes.sum())
     arm = np.zeros(3)
     if volume > 0.0:
         submerged = volumes > 0.0
         arm = volumes[submerged] @ (wet[submerged, clip.CENTROID] - origin) / volume
-    wetted_area = float(wet[:, clip.WETTED_AREA].sum())
-
-    # the waterplanes of all hulls as one
-    rows = vessel.packed.waterplanes(positions, rotations, origin)
-    area, x, y, xx, xy, yy = rows[:, INTEGRALS].sum(axis=0)
-    waterplane = Waterplane(
-        area=float(area),
-        first_moments=np.array([x, y]),
-        second_moments=np.array([[xx, xy], [xy, yy]]),
-        low=rows[:, LOWEST].min(axis=0),
-        high=rows[:, HIGHEST].max(axis=0),
-    )
     return FloatingPose(
         vessel=vessel,
         position=origin,
         rotation=world_from_vessel,
         volume=volume,
         arm=arm,
-        wetted_area=wetted_area,
-        waterplane=waterplane,
+        wetted_area=float(wet[:, clip.WETTED_AREA].sum()),
+        waterplane_area=float(wet[:, clip.WATERPLANE_AREA].sum()),
     )
+
+
+def _place_hulls(
+    vessel: Vessel, position: NDArray[np.float64], rotation: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Origins (h, 3) [m] and rotations world_from_hull (h, 9) of a vessel's hulls in a pose."""
+    origins = position + vessel.hull_positions @ rotation.T
+    return origins, (rotation @ vessel.hull_rotations).reshape(-1, 9)

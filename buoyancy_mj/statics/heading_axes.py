@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.statics.building import steiner
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
 
 HEAVE_ROLL_PITCH = slice(2, 5)
@@ -29,9 +30,15 @@ def measure_waterline(pose: FloatingPose, axes: NDArray[np.float64]) -> tuple[fl
 def compute_mass_matrix(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Compute mass and inertia about the centre of gravity (6, 6), in axes (3, 3)."""
     vessel, rotation = pose.vessel, axes @ pose.rotation
+    mass, arm = vessel.whole_mass, rotation @ vessel.centre_of_mass
+
+    # the cross product with the arm of the centre of mass, which gravity compensation sets apart
+    x, y, z = mass * arm
+    lever = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     matrix = np.zeros((6, 6))
-    matrix[:3, :3] = vessel.mass * np.eye(3)
-    matrix[3:, 3:] = rotation @ vessel.inertia @ rotation.T
+    matrix[:3, :3] = mass * np.eye(3)
+    matrix[:3, 3:], matrix[3:, :3] = -lever, lever
+    matrix[3:, 3:] = rotation @ vessel.inertia @ rotation.T + mass * steiner(arm)
     return matrix
 
 

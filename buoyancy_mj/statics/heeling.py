@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError
 from buoyancy_mj.statics.attitude import Attitude
-from buoyancy_mj.statics.balance import find_balance, find_heave_balance
+from buoyancy_mj.statics.balance import find_heave_balance
+from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.floating_pose import FloatingPose
 from buoyancy_mj.statics.vessel import Vessel
 

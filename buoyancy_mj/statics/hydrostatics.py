@@ -41,13 +41,15 @@ class Hydrostatics:
     level: float
     """Height of the still water [m], world frame."""
     mass: float
-    """Mass of the vessel [kg]."""
+    """Mass of the vessel that weighs [kg]: that of all bodies, less what is carried."""
+    carried_mass: float
+    """Mass of the vessel that gravity compensation carries (`gravcomp`) [kg]."""
     whole_volume: float
     """Volume of water that the vessel displaces fully submerged [m^3]."""
     volume: float
     """Volume of water that the vessel displaces [m^3]."""
     centre_of_gravity: NDArray[np.float64]
-    """Centre of gravity G (3,) [m], world frame."""
+    """Centre of gravity G (3,) [m], world frame: the point through which the weight acts."""
     centre_of_buoyancy: NDArray[np.float64]
     """Centre of buoyancy B (3,) [m], world frame; NaN when dry."""
     wetted_area: float
@@ -73,7 +75,7 @@ class Hydrostatics:
     heel: float
     """Roll [rad], port up."""
     mass_matrix: NDArray[np.float64]
-    """Mass and inertia about the centre of gravity (6, 6) [kg, kg m^2]."""
+    """Mass and inertia of all bodies about the centre of gravity (6, 6) [kg, kg m^2]."""
     stiffness: NDArray[np.float64]
     """Hydrostatic stiffness about the centre of gravity (6, 6) [N/m, N, N m]."""
 
@@ -250,6 +252,7 @@ def compute_hydrostatics(pose: FloatingPose) -> Hydrostatics:
         gravity=vessel.gravity,
         level=vessel.water.level,
         mass=vessel.mass,
+        carried_mass=vessel.carried_mass,
         whole_volume=vessel.volume,
         volume=pose.volume,
         centre_of_gravity=pose.position.copy(),

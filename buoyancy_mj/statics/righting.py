@@ -111,9 +111,9 @@ def righting_arm(
         selection: which geoms displace water, and as what.
 
     Raises:
-        EquilibriumError: the vessel sinks, or does not balance at all.
-        ModelError: a heel is not finite, `trim` is another word, a glob matches no site; or see
-            `statics.building.build_vessel`.
+        EquilibriumError: the vessel sinks, weighs nothing, or does not balance at all.
+        ModelError: a heel is not finite, `trim` is another word, a glob matches no site, joints or
+            a weld hold the vessel; or see `statics.building.build_vessel`.
         MeshError: a mesh bounds no volume.
 
     Example:
@@ -125,6 +125,7 @@ def righting_arm(
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
     vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel.check_free()
     return compute_righting_arm(vessel, heels, axis=axis, trim_free=trim == "free", points=points)
 
 

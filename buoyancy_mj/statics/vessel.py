@@ -1,4 +1,4 @@
-"""`Vessel`: a kinematic tree with hulls, as one rigid body, its joints held."""
+"""`Vessel`: the bodies that float together, as one rigid body, its joints held."""
 
 import dataclasses
 import fnmatch
@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj.errors import ModelError, choices
+from buoyancy_mj.errors import EquilibriumError, ModelError, choices
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.tethers import Tether, has_free_joint
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.statics.joined_trees import JoinedTree
 from buoyancy_mj.submersion.exact import PackedHulls
 from buoyancy_mj.submersion.hull_set import HullSet
 
@@ -51,9 +53,11 @@ class VesselHull:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Vessel:
-    """A kinematic tree of a model that has hulls, as one rigid body: its joints are held.
+    """The bodies of a model that float together, as one rigid body: their joints are held.
 
-    The vessel's axes are those of its root body, their origin is its centre of gravity.
+    They are a kinematic tree, or several that welds and connects hold together. The vessel's axes
+    are those of its root body, their origin is its centre of gravity. That is the point through
+    which its weight acts: what gravity compensation carries (`gravcomp`) weighs nothing.
     """
 
     model: mujoco.MjModel
@@ -62,14 +66,26 @@ class Vessel:
     """Coordinates of the model (nq,) that hold the joints."""
     root: int
     """Index of the root body."""
+    bodies: NDArray[np.int64]
+    """Indices of all its bodies (b,)."""
+    trees: tuple[JoinedTree, ...]
+    """Its kinematic trees."""
+    freedoms: int
+    """Number of ways in which its connects leave the trees free to move against each other."""
+    tether: Tether | None
+    """What keeps it from floating freely; None if nothing does."""
     water: Water
     """The sea; statics use its density and its still level alone."""
     gravity: float
     """Downward acceleration [m/s^2]."""
     mass: float
-    """Mass of all bodies of the tree [kg]."""
+    """Mass that weighs [kg]: that of all bodies, less what gravity compensation carries."""
+    carried_mass: float
+    """Mass that gravity compensation carries [kg]."""
     inertia: NDArray[np.float64]
-    """Inertia about the centre of gravity, in the vessel's axes (3, 3) [kg m^2]."""
+    """Inertia of all bodies about their centre of mass, in the vessel's axes (3, 3) [kg m^2]."""
+    centre_of_mass: NDArray[np.float64]
+    """Centre of mass in the vessel's axes (3,) [m]: their origin, without gravity compensation."""
     centre_of_gravity: NDArray[np.float64]
     """Centre of gravity in the frame of the root body (3,) [m]."""
     position: NDArray[np.float64]
@@ -79,7 +95,7 @@ class Vessel:
     hulls: tuple[VesselHull, ...]
     """The hulls (h)."""
     sites: dict[str, NDArray[np.float64]]
-    """Positions of the named sites of the tree in the vessel's axes, each (3,) [m]."""
+    """Positions of its named sites in the vessel's axes, each (3,) [m]."""
 
     @property
     def name(self) -> str:
@@ -88,8 +104,13 @@ class Vessel:
 
     @property
     def weight(self) -> float:
-        """Weight of all bodies [N]."""
+        """Weight of all bodies [N], less what gravity compensation carries."""
         return self.mass * self.gravity
+
+    @property
+    def whole_mass(self) -> float:
+        """Mass of all bodies [kg], that which gravity compensation carries too."""
+        return self.mass + self.carried_mass
 
     @property
     def specific_weight(self) -> float:
@@ -159,8 +180,34 @@ class Vessel:
 
     @property
     def free(self) -> bool:
-        """Whether the root body has a free joint."""
-        return has_free_joint(self.model, self.root)
+        """Whether it floats freely: its trees have free joints, and nothing holds it to a place."""
+        return self.tether is None
+
+    def check_free(self) -> None:
+        """Refuse a vessel that does not float freely.
+
+        Raises:
+            ModelError: joints, a weld or a connect hold it.
+        """
+        if self.tether is not None:
+            raise ModelError(
+                f"body '{self.tether.body}' {self.tether.how} and is not free to float; "
+                f"{self.tether.mend}"
+            )
+
+    def check_weight(self) -> None:
+        """Refuse a vessel that no water could hold down.
+
+        Raises:
+            EquilibriumError: gravity compensation carries all of it, or more.
+        """
+        if not self.mass > 0.0:
+            raise EquilibriumError(
+                f"'{self.name}' comes to rest nowhere: gravity compensation carries "
+                f"{self.carried_mass:.4g} kg of its {self.whole_mass:.4g} kg, "
+                "and the water lifts it out; "
+                "take gravcomp='...' out of its bodies, or weigh it down (see ballast)"
+            )
 
     def match_sites(self, patterns: Sequence[str], optional: Sequence[str] = ()) -> list[str]:
         """Find the names of the sites that match globs, each once.
@@ -192,21 +239,32 @@ class Vessel:
             rotation: world_from_vessel (3, 3).
 
         Raises:
-            ModelError: the root body has no free joint.
+            ModelError: joints, a weld or a connect hold the vessel.
         """
-        if not self.free:
-            raise ModelError(
-                f"body '{self.name}' hangs on joints and is not free to float; "
-                "give it a <freejoint/>"
-            )
+        self.check_free()
+        return self._place_trees(position, rotation)
+
+    def moved_to(self, position: NDArray[np.float64], rotation: NDArray[np.float64]) -> "Vessel":
+        """A copy of the vessel in a pose, be it free to go there or not.
+
+        Args:
+            position: of the centre of gravity (3,) [m], world frame.
+            rotation: world_from_vessel (3, 3).
+        """
+        qpos = self._place_trees(position, rotation)
+        return dataclasses.replace(self, qpos=qpos, position=position, rotation=rotation)
+
+    def _place_trees(
+        self, position: NDArray[np.float64], rotation: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Coordinates of the model (nq,) with the free joints of all trees moved to a pose."""
         qpos = self.qpos.copy()
-        start = int(self.model.jnt_qposadr[self.model.body_jntadr[self.root]])
-        qpos[start : start + 3] = position - rotation @ self.centre_of_gravity
-        qpos[start + 3 : start + 7] = Rotation.from_matrix(rotation).as_quat(scalar_first=True)
+        origin = position - rotation @ self.centre_of_gravity
+        for tree in self.trees:
+            if not has_free_joint(self.model, tree.root):
+                continue
+            start = int(self.model.jnt_qposadr[self.model.body_jntadr[tree.root]])
+            turned = Rotation.from_matrix(rotation @ tree.rotation)
+            qpos[start : start + 3] = origin + rotation @ tree.position
+            qpos[start + 3 : start + 7] = turned.as_quat(scalar_first=True)
         return qpos
-
-
-def has_free_joint(model: mujoco.MjModel, body: int) -> bool:
-    """Whether the first joint of a body is a free joint."""
-    joint = int(model.body_jntadr[body])
-    return joint >= 0 and int(model.jnt_type[joint]) == int(mujoco.mjtJoint.mjJNT_FREE)

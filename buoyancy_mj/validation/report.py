@@ -7,6 +7,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from buoyancy_mj.errors import BuoyancyError, choices
+from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.validation import (
     bluerov2_heavy,
     coefficients,
@@ -23,6 +24,8 @@ CASES: Mapping[str, Case] = {case.name: case for module in _MODULES for case in 
 """The cases by name, in the order of the page."""
 HEADER = ("quantity", "published", "here", "difference", "allowed", "verdict")
 """Header of the tables of rows."""
+PAGE = "validation.md"
+"""Name of the page."""
 PICTURES = "validation"
 """Folder of the pictures, beside the page."""
 DPI = 110
@@ -49,6 +52,9 @@ def validate(
         if name not in CASES:
             raise BuoyancyError(f"there is no case '{name}'; {choices(name, CASES)}")
 
+    if not only:
+        # before anything runs, for that takes minutes
+        _check_page(folder / PAGE)
     results = {}
     for name, case in CASES.items():
         if not only or name in only:
@@ -59,15 +65,26 @@ def validate(
     return results
 
 
+def _check_page(page: Path) -> None:
+    """Refuse to replace a page that somebody else has written."""
+    try:
+        require_own(page, _TITLE)
+    except OSError as error:
+        raise BuoyancyError(
+            f"cannot write '{page}': {error.strerror}; choose another folder (--out)"
+        ) from error
+
+
 def _write(folder: Path, results: Mapping[str, Sequence[Row]]) -> None:
     """Write the page and its pictures."""
     try:
-        (folder / PICTURES).mkdir(parents=True, exist_ok=True)
         for name, case in CASES.items():
             if case.draw is not None:
                 picture = folder / PICTURES / f"{name}.png"
-                case.draw().savefig(picture, dpi=DPI, metadata={"Software": None})
-        (folder / "validation.md").write_text(render_page(results))
+                with replace_file(picture) as part:
+                    case.draw().savefig(part, dpi=DPI, metadata={"Software": None})
+        with replace_file(folder / PAGE) as part:
+            part.write_text(render_page(results))
     except OSError as error:
         raise BuoyancyError(f"cannot write the validation to '{folder}': {error}") from error
 
@@ -121,8 +138,11 @@ def format_row(row: Row) -> tuple[str, ...]:
     )
 
 
-_HEAD = """# Against the world
-
+_TITLE = "# Against the world"
+"""The first line of the page."""
+_HEAD = (
+    f"{_TITLE}\n"
+    + """
 This page sets published experiments, benchmarks and closed forms beside what this package computes.
 The page and its pictures are written by
 
@@ -131,3 +151,4 @@ The page and its pictures are written by
 The last run was on {machine}. {holding} of {count} rows hold. Those that fail stay on the page,
 with the reason below their table.
 """
+)

@@ -6,27 +6,32 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from buoyancy_mj.viz.plots import PLOTS, TIMELINE
+from buoyancy_mj.viz.plots import TIMELINE, list_plots
 
 
-def run_blueprint(title: str, look_at: NDArray[np.float64], size: float) -> rrb.Blueprint:
+def run_blueprint(
+    title: str, look_at: NDArray[np.float64], size: float, vehicles: Sequence[str] = ()
+) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
     Args:
         title: name of the view of the world.
         look_at: point at which it looks (3,) [m].
-        size: length of the vehicle [m], a few of which lie between the eye and that point.
+        size: length of what it shows [m], a few of which lie between the eye and that point.
+        vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
     """
     world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
     texts = rrb.Tabs(
         rrb.TextDocumentView(origin="summary", name="summary"),
         rrb.TextDocumentView(origin="scene", name="scene"),
     )
-    plots = [_plot_view(name, contents) for name, contents in PLOTS.items()]
+    plots: rrb.Container = rrb.Vertical(*_plot_views())
+    if vehicles:
+        plots = rrb.Tabs(*(rrb.Vertical(*_plot_views(name), name=name) for name in vehicles))
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Vertical(world, texts, row_shares=[4, 1]),
-            rrb.Vertical(*plots),
+            plots,
             column_shares=[3, 2],
         ),
         rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
@@ -69,16 +74,20 @@ def _world_view(
     )
 
 
+def _plot_views(vehicle: str = "") -> list[rrb.TimeSeriesView]:
+    """The plots of a vehicle; '' is the only one."""
+    return [_plot_view(title, contents) for title, contents in list_plots(vehicle).items()]
+
+
 def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
     """A plot of the entities in `contents`; a leading '-' leaves an entity out."""
+    has_hulls = any(path.endswith("/volume/**") for path in contents)
     return rrb.TimeSeriesView(
         origin="plots",
         contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
         name=title,
         # a legend of all hulls would cover their lines
-        plot_legend=rrb.PlotLegend(
-            corner=rrb.Corner2D.RightTop, visible="/plots/volume/**" not in contents
-        ),
+        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=not has_hulls),
     )
 
 

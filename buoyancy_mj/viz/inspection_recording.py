@@ -54,7 +54,18 @@ def record_inspection(inspection: Inspection, path: Path) -> Path:
     """
     stream = rr.RecordingStream("buoyancy_mj_inspection")
     file = RrdFile(path, stream)
+    try:
+        _draw(stream, inspection)
+        file.write()
+    except BaseException:
+        if not file.closed:
+            file.discard()
+        raise
+    return file.close(complete=True)
 
+
+def _draw(stream: rr.RecordingStream, inspection: Inspection) -> None:
+    """Draw the report and the vessels."""
     # the layout, which looks at the first vessel
     floating = inspection.vessels
     look_at = floating[0].at_rest.position if floating else np.zeros(3)
@@ -68,8 +79,6 @@ def record_inspection(inspection: Inspection, path: Path) -> Path:
     stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     for one in floating:
         _draw_vessel(stream, rr.escape_entity_path_part(one.total.body), one)
-    file.write()
-    return file.close(complete=True)
 
 
 def _draw_vessel(stream: rr.RecordingStream, name: str, floating: VesselInspection) -> None:

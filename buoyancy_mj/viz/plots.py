@@ -6,6 +6,7 @@ import numpy as np
 import rerun as rr
 import trimesh
 
+from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
 
 Colour = tuple[int, int, int]
@@ -24,17 +25,6 @@ COLOURS: Mapping[str, Colour] = {
 """Colours of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
 """Colour of sums, and of forces without a colour of their own."""
-_LARGE = ("/plots/force/weight", "/plots/force/buoyancy")
-PLOTS: Mapping[str, Sequence[str]] = {
-    "height [m]": ["/plots/height/**"],
-    "weight and buoyancy [N]": _LARGE,
-    # small beside the weight
-    "other forces [N]": ["/plots/force/**", *(f"- {path}" for path in _LARGE)],
-    "submerged volume [l]": ["/plots/volume/**"],
-    "attitude [deg]": ["/plots/attitude/**"],
-    "energy [J]": ["/plots/energy/**"],
-}
-"""Entities that each plot shows, by its title, from top to bottom."""
 _LINES: Mapping[Line, Colour] = {
     ("height", "centre_of_gravity"): (240, 130, 40),
     ("height", "surface"): (60, 160, 255),
@@ -50,27 +40,44 @@ _LINES: Mapping[Line, Colour] = {
 """Colours of the lines that every run has."""
 
 
-def entity(line: Line) -> str:
-    """The entity of a line in the recording; the parts of its name may hold any character."""
-    return "/".join(["plots", *map(rr.escape_entity_path_part, line)])
-
-
-def values(frame: Frame, weight: float) -> dict[Line, float]:
-    """The values of all lines at one instant.
+def entity(line: Line, vehicle: str = "") -> str:
+    """The entity of a line in the recording; the parts of its name may hold any character.
 
     Args:
-        frame: the instant.
-        weight: weight of the vehicle [N].
+        line: the line.
+        vehicle: whose it is; '' for the only vehicle.
+    """
+    parts = (vehicle, *line) if vehicle else line
+    return "/".join(["plots", *map(rr.escape_entity_path_part, parts)])
+
+
+def list_plots(vehicle: str = "") -> dict[str, list[str]]:
+    """Entities that each plot of a vehicle shows, by its title, from top to bottom."""
+    top = f"/plots/{rr.escape_entity_path_part(vehicle)}" if vehicle else "/plots"
+    large = [f"{top}/force/weight", f"{top}/force/buoyancy"]
+    return {
+        "height [m]": [f"{top}/height/**"],
+        "weight and buoyancy [N]": large,
+        # small beside the weight
+        "other forces [N]": [f"{top}/force/**", *(f"- {path}" for path in large)],
+        "submerged volume [l]": [f"{top}/volume/**"],
+        "attitude [deg]": [f"{top}/attitude/**"],
+        "energy [J]": [f"{top}/energy/**"],
+    }
+
+
+def values(vehicle: Vehicle, frame: Frame) -> dict[Line, float]:
+    """The values of all lines of a vehicle at one instant.
 
     Returns:
         Heights [m], angles [degrees], energies [J], magnitudes of forces [N], volumes [l].
     """
-    loads = frame.loads
-    energy = frame.energy
-    roll, pitch, yaw = np.degrees(frame.attitude).tolist()
+    seen = frame.vehicles[vehicle.name]
+    energy = seen.energy
+    roll, pitch, yaw = np.degrees(seen.attitude).tolist()
     result: dict[Line, float] = {
-        ("height", "centre_of_gravity"): float(frame.centre_of_mass[2]),
-        ("height", "surface"): frame.elevation,
+        ("height", "centre_of_gravity"): float(seen.centre_of_mass[2]),
+        ("height", "surface"): seen.elevation,
         ("attitude", "roll"): roll,
         ("attitude", "pitch"): pitch,
         ("attitude", "yaw"): yaw,
@@ -78,13 +85,13 @@ def values(frame: Frame, weight: float) -> dict[Line, float]:
         ("energy", "potential"): energy.potential,
         ("energy", "buoyancy"): energy.buoyancy,
         ("energy", "total"): energy.total,
-        ("force", "weight"): weight,
-        ("volume", "total"): 1000.0 * float(loads.total.volume),
+        ("force", "weight"): vehicle.weight,
+        ("volume", "total"): 1000.0 * seen.volume,
     }
-    for cause, rows in loads.by_cause.items():
-        result["force", cause] = float(np.linalg.norm(rows[:, :3].sum(axis=0)))
-    for name, volume in zip(loads.names, loads.hull.volume, strict=True):
-        result["volume", "hulls", name] = 1000.0 * float(volume)
+    for cause, force in seen.forces.items():
+        result["force", cause] = float(np.linalg.norm(force))
+    for hull, row in zip(vehicle.hulls, vehicle.rows, strict=True):
+        result["volume", "hulls", hull.name] = 1000.0 * float(frame.loads.hull.volume[row])
     return result
 
 

@@ -5,6 +5,7 @@ import os
 import sys
 import uuid
 import warnings
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +13,15 @@ import numpy as np
 import rerun as rr
 
 from buoyancy_mj.errors import BuoyancyWarning, RecordingError
-from buoyancy_mj.scenes.frames import Frame, Summary
+from buoyancy_mj.scenes.fleet import Vehicle
+from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.viz import plots
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.forces import draw_centres, draw_forces
+from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
 from buoyancy_mj.viz.rrd import RrdFile
 from buoyancy_mj.viz.water_surface import SurfaceDrawing
 
@@ -28,9 +32,10 @@ FLUSH_EVERY = 0.25
 class Recording:
     """A run, recorded frame by frame.
 
-    The file grows under the name `NAME.partial.rrd` and takes its own at the end, so that a file
-    which was there is replaced as a whole or not at all. A run that breaks off leaves what was
-    recorded until then, readable, under the name that `close` returns.
+    The file grows under the name `NAME.partial.rrd`, or `NAME.partial-2.rrd` and so on where that
+    exists, and takes its own at the end: a file which was there is replaced as a whole or not at
+    all. A run that breaks off leaves what was recorded until then, readable, under the name that
+    `close` returns.
 
     Args:
         simulation: the run, for its model and scene.
@@ -53,22 +58,27 @@ class Recording:
         if path is not None:
             self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
             self._file = RrdFile(path, self._streams[-1])
-        if live:
-            self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
-            try:
+        try:
+            if live:
+                self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
                 _open_viewer(self._streams[-1])
-            except RecordingError:
-                if self._file is not None:
-                    self._file.discard()
-                raise
+            self._begin()
+        except BaseException:
+            # nothing of a recording that never began
+            if not self.closed and self._file is not None:
+                self._file.discard()
+            raise
 
-        # the picture and the plots
+    def _begin(self) -> None:
+        """Draw what stays the same, and be ready for frames."""
+        simulation = self.simulation
         self._times: list[float] = []
-        self._lines: dict[plots.Line, list[float]] = {}
-        self._size = 2.0 * max(
-            float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls
-        )
-        self._bodies = BodyDrawing(simulation, self._size)
+        self._lines: dict[str, list[float]] = {}
+        vehicles = simulation.vehicles.values()
+        self._several = list(simulation.vehicles) if len(vehicles) > 1 else []
+        self._start = place_at_start(simulation)
+        self._size = measure_extent(vehicles, self._start)
+        self._bodies = BodyDrawing(simulation, max(vehicle.length for vehicle in vehicles))
         self._surface = SurfaceDrawing(simulation.scene.water, self._size)
         self._draw_static()
 
@@ -92,16 +102,18 @@ class Recording:
         # the picture
         for stream in self._streams:
             stream.set_time(plots.TIMELINE, duration=frame.time)
-        weight = self.simulation.weight
         self._bodies.draw(self._log, frame)
-        self._surface.draw(self._log, frame)
-        draw_centres(self._log, frame, self._size)
-        draw_forces(self._log, frame, self._size, weight)
+        middle = find_middle(one.centre_of_mass for one in frame.vehicles.values())
+        self._surface.draw(self._log, middle, frame.time)
+        for vehicle, name in self._vehicles():
+            draw_centres(self._log, vehicle, frame, name)
+            draw_forces(self._log, vehicle, frame, name)
 
         # the plots, as columns of many frames
         self._times.append(frame.time)
-        for line, value in plots.values(frame, weight).items():
-            self._lines.setdefault(line, []).append(value)
+        for vehicle, name in self._vehicles():
+            for line, value in plots.values(vehicle, frame).items():
+                self._lines.setdefault(plots.entity(line, name), []).append(value)
         if self._times[-1] - self._times[0] >= FLUSH_EVERY:
             self._send_lines()
             self._write()
@@ -136,19 +148,29 @@ class Recording:
     def _draw_static(self) -> None:
         """Draw what stays the same in all frames."""
         scene = self.simulation.scene
-        look_at = np.array([*scene.start.position[:2], scene.water.level])
+        vehicles = self.simulation.vehicles.values()
+        middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
+        look_at = np.array([*middle[:2], scene.water.level])
+        layout = run_blueprint(scene.title, look_at, self._size, self._several)
         for stream in self._streams:
-            stream.send_blueprint(run_blueprint(scene.title, look_at, self._size))
+            stream.send_blueprint(layout)
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._log_text("scene", f"```toml\n{scene.text}\n```")
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
 
         # the style of each line
-        hulls = [hull.name for hull in self.simulation.buoyancy.hulls]
-        for line, style in plots.styles(self.simulation.buoyancy.causes, hulls).items():
-            self._log(plots.entity(line), style, static=True)
+        causes = self.simulation.buoyancy.causes
+        for vehicle, name in self._vehicles():
+            styles = plots.styles(causes, [hull.name for hull in vehicle.hulls])
+            for line, style in styles.items():
+                self._log(plots.entity(line, name), style, static=True)
         self._write()
+
+    def _vehicles(self) -> Iterator[tuple[Vehicle, str]]:
+        """Each vehicle, and what tells it from others: '' for the only one."""
+        for name, vehicle in self.simulation.vehicles.items():
+            yield vehicle, name if self._several else ""
 
     def _log(self, entity: str, *data: Any, static: bool = False) -> None:
         """Log data to all streams."""
@@ -164,9 +186,9 @@ class Recording:
         if not self._times:
             return
         times = rr.TimeColumn(plots.TIMELINE, duration=self._times)
-        for line, values in self._lines.items():
+        for entity, values in self._lines.items():
             for stream in self._streams:
-                stream.send_columns(plots.entity(line), [times], rr.Scalars.columns(scalars=values))
+                stream.send_columns(entity, [times], rr.Scalars.columns(scalars=values))
         self._times = []
         self._lines = {}
 
@@ -195,5 +217,7 @@ def _open_viewer(stream: rr.RecordingStream) -> None:
 
 def _summary_text(summary: Summary) -> str:
     """The summary as a Markdown table."""
-    rows = "".join(f"| {name} | {value} |\n" for name, value in summary.rows())
-    return f"| {summary.scene} | |\n|---|---|\n{rows}"
+    names = list(summary.vehicles) if len(summary.vehicles) > 1 else [""]
+    lines = [(summary.scene, *names), ("---",) * (1 + len(names)), *summary.rows()]
+    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return f"{table}\n{summary.caption}\n" if len(names) > 1 else table

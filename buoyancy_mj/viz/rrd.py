@@ -7,16 +7,20 @@ message of kind 0 and a footer. One file is one header and all the messages; `re
 adds the footer and packs the frames together.
 """
 
+import contextlib
 import os
+import shutil
 import struct
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
 import rerun as rr
 
 from buoyancy_mj.errors import RecordingError
+from buoyancy_mj.files import open_partial
 
 _HEADER_SIZE = 12
 _MESSAGE = struct.Struct("<QQ")
@@ -28,8 +32,8 @@ _END = 0
 class RrdFile:
     """What a stream logs, in a file.
 
-    It grows under the name `NAME.partial.rrd` and takes its own when it is whole, so that a file
-    which was there is replaced at once or not at all.
+    It grows under the name `NAME.partial.rrd`, or `NAME.partial-2.rrd` and so on where that exists,
+    and takes its own when it is whole: a file which was there is replaced at once or not at all.
 
     Args:
         path: the file.
@@ -42,7 +46,7 @@ class RrdFile:
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
         self.path = path
         """The name of the whole file."""
-        self.partial = path.with_name(f"{path.stem}.partial.rrd")
+        self.partial: Path
         """The name under which it grows."""
         self.closed = False
         """Whether the file has its name already, or was discarded."""
@@ -53,13 +57,15 @@ class RrdFile:
             )
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            self._descriptor = os.open(self.partial, os.O_WRONLY | os.O_CREAT, 0o644)
+            self._descriptor, self.partial = open_partial(path)
+        except BlockingIOError as error:
+            raise RecordingError(
+                f"another run is writing '{error.filename}'; choose another place (--record)"
+            ) from error
         except OSError as error:
             raise RecordingError(
-                f"cannot write '{self.partial}': {error.strerror}; choose another place (--record)"
+                f"cannot write '{path}': {error.strerror}; choose another place (--record)"
             ) from error
-        _lock(self._descriptor, self.partial)
-        os.ftruncate(self._descriptor, 0)
         self._stream = stream.binary_stream()
 
     def write(self) -> None:
@@ -76,7 +82,8 @@ class RrdFile:
                     rest = rest[os.write(self._descriptor, rest) :]
                 self._written += len(message)
         except OSError as error:
-            os.ftruncate(self._descriptor, self._written)
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._descriptor, self._written)
             path = self.close(complete=False)
             raise RecordingError(
                 f"the recording broke off: {error.strerror}; what was written is in '{path}'"
@@ -98,8 +105,22 @@ class RrdFile:
         """
         os.close(self._descriptor)
         self.closed = True
-        _add_footer(self.partial)
-        if not complete and self.path.exists():
+        try:
+            _add_footer(self.partial)
+        finally:
+            # also when a second Ctrl-C finds that a footer takes too long
+            left = self._take_name(complete=complete)
+        return left
+
+    def discard(self) -> None:
+        """Remove the file of a recording that never began."""
+        os.close(self._descriptor)
+        self.closed = True
+        self.partial.unlink(missing_ok=True)
+
+    def _take_name(self, *, complete: bool) -> Path:
+        """Give the file its name, but for an incomplete one in whose place another is."""
+        if not complete and os.path.lexists(self.path):
             return self.partial
         try:
             os.replace(self.partial, self.path)
@@ -109,27 +130,6 @@ class RrdFile:
                 f"the recording is in '{self.partial}'"
             ) from error
         return self.path
-
-    def discard(self) -> None:
-        """Remove the file of a recording that never began."""
-        os.close(self._descriptor)
-        self.closed = True
-        self.partial.unlink(missing_ok=True)
-
-
-def _lock(descriptor: int, path: Path) -> None:
-    """Keep other runs from writing the same file, where the system knows locks."""
-    try:
-        import fcntl
-    except ImportError:
-        return
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        os.close(descriptor)
-        raise RecordingError(
-            f"another run is writing '{path}'; choose another place (--record)"
-        ) from error
 
 
 def _split(chunk: bytes, *, with_header: bool) -> Iterator[memoryview]:
@@ -151,10 +151,16 @@ def _split(chunk: bytes, *, with_header: bool) -> Iterator[memoryview]:
 
 def _add_footer(path: Path) -> None:
     """Add the footer; a file for which there is no space stays without, and still opens."""
-    whole = path.with_name(f"{path.stem}.whole.rrd")
-    command = [sys.executable, "-m", "rerun", "rrd", "optimize", str(path), "-o", str(whole)]
-    optimized = subprocess.run(command, capture_output=True, check=False)
-    if optimized.returncode == 0 and whole.is_file():
+    path = path.absolute()
+    with (
+        contextlib.suppress(OSError, subprocess.CalledProcessError),
+        tempfile.TemporaryDirectory(prefix=".", dir=path.parent) as folder,
+    ):
+        whole = Path(folder, "whole.rrd")
+        # in an empty folder: Python imports nothing from where the user works
+        subprocess.run(
+            [sys.executable, "-P", "-m", "rerun", "rrd", "optimize", path, "-o", whole],
+            cwd=folder, capture_output=True, check=True, stdin=subprocess.DEVNULL,
+        )  # fmt: skip
+        shutil.copymode(path, whole)
         os.replace(whole, path)
-    else:
-        whole.unlink(missing_ok=True)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
 
 CELLS = 24
 """Number of tiles along each side of the surface."""
@@ -33,14 +34,14 @@ def view_simulation(simulation: Simulation) -> None:
         DivergenceError: a position, velocity or acceleration left the finite numbers.
     """
     data = simulation.data
-    size = 4.0 * max(
-        float(np.linalg.norm(hull.position)) + hull.mesh.radius for hull in simulation.hulls
-    )
+    vehicles = simulation.vehicles.values()
+    size = 2.0 * measure_extent(vehicles, place_at_start(simulation))
     ambient = simulation.model.vis.headlight.ambient
     ambient[:] = np.maximum(ambient, AMBIENT)
     with _open_viewer(simulation) as viewer:
         # the camera
-        viewer.cam.lookat[:] = simulation.centre_of_mass(data)
+        middle = find_middle(vehicle.centre_of_mass(data) for vehicle in vehicles)
+        viewer.cam.lookat[:] = middle
         viewer.cam.distance = size
         viewer.cam.azimuth = 140.0
         viewer.cam.elevation = -20.0
@@ -53,8 +54,8 @@ def view_simulation(simulation: Simulation) -> None:
                 while data.time < end:
                     simulation.step()
                 water = simulation.scene.water
-                centre = simulation.centre_of_mass(data)
-                draw_surface(viewer.user_scn, water, centre, size, data.time)
+                middle = find_middle(vehicle.centre_of_mass(data) for vehicle in vehicles)
+                draw_surface(viewer.user_scn, water, middle, size, data.time)
             viewer.sync()
             time.sleep(max(0.0, FRAME_TIME - (time.perf_counter() - started)))
 

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.hulls.bodies import find_mocap_bodies, find_moving_bodies
 from buoyancy_mj.hulls.geoms import read_geom_mesh
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.viz.triangles import SmoothMesh, rectangle, smooth_mesh
@@ -53,9 +54,10 @@ def find_visible_geoms(model: mujoco.MjModel) -> Iterator[VisibleGeom]:
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     geoms = np.flatnonzero(model.geom_group < SHOWN_GROUPS)
+    can_move = find_moving_bodies(model) | find_mocap_bodies(model)
     for geom in map(int, geoms if len(geoms) else range(model.ngeom)):
         body = int(model.geom_bodyid[geom])
-        moves = model.body_weldid[body] != 0 or model.body_mocapid[body] >= 0
+        moves = bool(can_move[body])
         rgba = _colour(model, geom)
         mesh = _mesh(model, geom, fine=moves)
         if mesh is None or rgba[3] == 0.0:

@@ -1,29 +1,28 @@
-"""`SurfaceDrawing`: the water's surface around the vehicle in a recording."""
+"""`SurfaceDrawing`: the water's surface around the vehicles in a recording."""
 
 import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz.log import Log
 
 CELLS = 24
 """Number of cells along each side of the surface."""
 WIDTH = 4.0
-"""Length of a side over the length of the vehicle."""
+"""Length of a side over the length of what floats on it."""
 STRIDE = 4
-"""Number of cells by which the surface moves when the vehicle leaves its middle."""
+"""Number of cells by which the surface moves when its middle is left."""
 WATER = (70, 150, 215, 45)
 GRID = (190, 225, 250, 45)
 
 
 class SurfaceDrawing:
-    """The water's surface, a square of cells that follows the vehicle.
+    """The water's surface, a square of cells that follows the vehicles.
 
     Args:
         water: the sea.
-        size: length of the vehicle [m].
+        size: length of what floats on it [m].
     """
 
     def __init__(self, water: Water, size: float) -> None:
@@ -41,10 +40,10 @@ class SurfaceDrawing:
         mesh = rr.Mesh3D.from_fields(triangle_indices=faces, albedo_factor=WATER)
         log("world/water", mesh, static=True)
 
-    def draw(self, log: Log, frame: Frame) -> None:
-        """Draw one frame; still water only when the square moves."""
+    def draw(self, log: Log, middle: NDArray[np.float64], time: float) -> None:
+        """Draw the surface around a point (3,) [m] at a time [s]; still water when it moves."""
         stride = STRIDE * self._cell
-        centre = np.round(frame.centre_of_mass[:2] / stride) * stride
+        centre = np.round(middle[:2] / stride) * stride
         is_still = not self._water.waves
         if is_still and self._centre is not None and np.array_equal(centre, self._centre):
             return
@@ -53,7 +52,7 @@ class SurfaceDrawing:
         # corners of the cells, and normals by their slopes
         along = (np.arange(CELLS + 1) - 0.5 * CELLS) * self._cell
         x, y = np.meshgrid(centre[0] + along, centre[1] + along, indexing="ij")
-        z = self._water.elevation(x, y, frame.time)
+        z = self._water.elevation(x, y, time)
         slope_x, slope_y = np.gradient(z, self._cell)
         corners = np.stack([x, y, z], axis=-1)
         normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1)

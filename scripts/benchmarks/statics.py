@@ -16,8 +16,8 @@ from benchmarks.timing import ATTITUDES, least_duration, median_time
 from buoyancy_mj import TriMesh, equilibria, equilibrium, hydrostatics, repair, righting_arm
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
-from buoyancy_mj.statics.balance import find_balance
 from buoyancy_mj.statics.building import build_vessel
+from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.vessel import Vessel
 
 Results = dict[str, dict[str, float]]

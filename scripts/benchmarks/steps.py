@@ -181,7 +181,7 @@ def measure_first_step(_quick: bool) -> float:
     times = []
     for _ in range(3):
         started = time.perf_counter()
-        subprocess.run([sys.executable, "-c", code], check=True)
+        subprocess.run([sys.executable, "-P", "-c", code], check=True)
         times.append(time.perf_counter() - started)
     return statistics.median(times)
 

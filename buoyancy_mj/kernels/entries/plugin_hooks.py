@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numba import int32, int64, njit, void
 
-from buoyancy_mj.kernels.entries.passive import WaterTable, act_or_fail
+from buoyancy_mj.kernels.entries.passive import act_or_fail
 from buoyancy_mj.kernels.entries.pointers import call, set_word, word
+from buoyancy_mj.kernels.entries.tables import WaterTable
 from buoyancy_mj.kernels.entries.views import WORDS, slot, view, view_engine
-from buoyancy_mj.kernels.multibody import Identity
+from buoyancy_mj.kernels.multibody import Identity, sum_sizes
 from buoyancy_mj.kernels.passes import ALIVE, AUGMENTED, DATA, MODEL, SIZES, WATER, Record
 
 _IDS = WORDS * slot(Record, "ids")
@@ -38,9 +39,9 @@ def _resolve(model, data, instance, context):
     An error goes to the engine.
     """
     links = view(context, Context)
-    text = call(links.resolve, model, data, instance, 0)
+    text = call(links.resolve, (model, data, instance))
     if text != 0:
-        call(links.error, text, 0, 0, 0)
+        call(links.error, (text,))
 
 
 def nstate(model: int64, instance: int32) -> int32:
@@ -108,14 +109,9 @@ def _is_of_another(model, data, record):
 
 @njit(cache=True, error_model="numpy")
 def _sum_sizes(model, data, record):
-    """A sum over the bits of the sizes of all geoms, which another size changes."""
+    """The sum by which other sizes of a model's geoms are noticed."""
     offsets = view(view(record, Record).ids[WATER], WaterTable).offsets
-    sizes = view_engine(model, data, offsets, Identity).geom_size
-    total = np.int64(0)
-    for geom in range(sizes.shape[0]):
-        for k in range(3):
-            total = 31 * total + sizes[geom, k]
-    return total
+    return sum_sizes(view_engine(model, data, offsets, Identity).geom_size)
 
 
 HOOKS = (nstate, reset, init, destroy, copy, compute)

@@ -17,18 +17,20 @@ def pointer(typing, address):
 
 
 @intrinsic
-def call(typing, function, first, second, third, fourth):
-    """Call the C function at an address with four words; it returns one.
+def call(typing, function, words):
+    """Call the C function at an address with a tuple of words; it returns one.
 
     A function may take fewer words, or return none.
     """
+    count = len(words)
 
     def code(context, builder, signature, args):
         word = ir.IntType(64)
-        kind = ir.FunctionType(word, [word] * 4)
-        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), args[1:])
+        kind = ir.FunctionType(word, [word] * count)
+        values = [builder.extract_value(args[1], n) for n in range(count)]
+        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
 
-    return types.int64(*[types.int64] * 5), code
+    return types.int64(types.int64, types.UniTuple(types.int64, count)), code
 
 
 @intrinsic

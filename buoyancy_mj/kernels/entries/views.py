@@ -32,6 +32,10 @@ class Table(Generic[T]):
         self.address: int = self._words.ctypes.data
         """Of the table."""
 
+    def set_number(self, name: str, value: int) -> None:
+        """Change a number of the table; `arrays` keep the one that was there at first."""
+        self._words[slot(type(self.arrays), name), 0] = value
+
 
 def slot(kind: type, name: str) -> int:
     """Which array of a NamedTuple class, counted with nested ones in their place, has a name."""

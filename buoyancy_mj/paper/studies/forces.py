@@ -15,7 +15,8 @@ from buoyancy_mj.paper.runs import load_scene, run, run_steps
 from buoyancy_mj.paper.study import Claim, Column, Result, Table, judge, tabulate
 from buoyancy_mj.paper.wording import itemize
 from buoyancy_mj.scenes.assembly import assemble
-from buoyancy_mj.scenes.scene import Scene, Start
+from buoyancy_mj.scenes.scene import Scene
+from buoyancy_mj.scenes.scene_vehicle import Start
 from buoyancy_mj.submersion.convex_hull import ConvexHull
 from buoyancy_mj.submersion.methods import Method
 from buoyancy_mj.submersion.submerge import submerge

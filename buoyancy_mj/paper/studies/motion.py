@@ -14,7 +14,7 @@ from buoyancy_mj.paper.methods import BASIC_METHODS, DENSITY
 from buoyancy_mj.paper.runs import SURFACES, load_scene, run, steps_per_period, swing
 from buoyancy_mj.paper.study import Claim, Result, judge, tabulate
 from buoyancy_mj.paper.wording import itemize
-from buoyancy_mj.scenes.scene import Start
+from buoyancy_mj.scenes.scene_vehicle import Start
 
 SWING_LIMIT = 0.05
 """What the paper allows the centre of gravity on waves [m]."""

@@ -1,0 +1,126 @@
+"""Files written whole or not at all, under names that nobody else has.
+
+In: a path that somebody asked for.
+Out: a file that may grow beside it, a file that takes its name at the end, and locks.
+May import: nothing of this package.
+"""
+
+import contextlib
+import os
+import secrets
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+_NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0)
+"""How a file is opened that must not be there yet, not even as a link."""
+_NEVER_WAIT = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
+
+
+def open_partial(path: Path) -> tuple[int, Path]:
+    """Make a file in which the file at `path` may grow, and lock it.
+
+    It is `NAME.partial.EXT`, or `NAME.partial-2.EXT` and so on where that exists: what is there was
+    left by a process that was killed, or is somebody's own.
+
+    Returns:
+        Its descriptor, and its name.
+
+    Raises:
+        BlockingIOError: another process is writing the file at `path`; `filename` names where.
+        OSError: no file can be made there.
+    """
+    number = 0
+    while True:
+        number += 1
+        tail = "partial" if number == 1 else f"partial-{number}"
+        partial = path.with_name(f"{path.stem}.{tail}{path.suffix}")
+        try:
+            descriptor = os.open(partial, _NEW, 0o666)
+        except FileExistsError:
+            _require_unlocked(partial)
+        else:
+            lock(descriptor, partial)
+            return descriptor, partial
+
+
+def lock(descriptor: int, path: Path) -> None:
+    """Keep other processes from locking the same file until the descriptor is closed.
+
+    The system takes the lock back when the process ends, whatever ends it. Where the system knows
+    no such locks, nothing is locked.
+
+    Raises:
+        BlockingIOError: another process has locked it.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        return
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError as error:
+        raise BlockingIOError(error.errno, error.strerror, str(path)) from None
+    except OSError:
+        # a file system without locks
+        return
+
+
+@contextlib.contextmanager
+def replace_file(path: Path) -> Iterator[Path]:
+    """Write a file anew: under another name in its folder, which becomes its own at the end.
+
+    If the block fails, the file is as it was. What is no regular file, as /dev/stdout, is written
+    where it is.
+
+    Yields:
+        Where to write.
+
+    Raises:
+        OSError: the file cannot be made, or is not to be written.
+    """
+    path = Path(os.path.realpath(path))
+    if path.exists() and not path.is_file():
+        yield path
+        return
+    if path.exists() and not os.access(path, os.W_OK):
+        raise PermissionError(13, "Permission denied", str(path))
+    path.parent.mkdir(parents=True, exist_ok=True)
+
+    # the end of the name stays: it says what kind of file this is
+    part = path.with_name(f".{secrets.token_hex(4)}{path.suffix}")
+    os.close(os.open(part, _NEW, 0o666))
+    try:
+        if path.exists():
+            shutil.copymode(path, part)
+        yield part
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def require_own(path: Path, mark: str) -> None:
+    """Check that a file of a name that nobody gave is not somebody else's.
+
+    Args:
+        path: where this package is to write.
+        mark: a text that the files have which this package writes there.
+
+    Raises:
+        FileExistsError: there is a file without the mark.
+    """
+    if os.path.lexists(path) and not (path.is_file() and mark.encode() in path.read_bytes()):
+        raise FileExistsError(17, "there is a file which was not made here", str(path))
+
+
+def _require_unlocked(path: Path) -> None:
+    """Raise `BlockingIOError` if another process has locked a file."""
+    try:
+        descriptor = os.open(path, os.O_RDONLY | _NEVER_WAIT)
+    except OSError:
+        # a link, or a file of somebody else
+        return
+    try:
+        lock(descriptor, path)
+    finally:
+        os.close(descriptor)
