@@ -84,6 +84,24 @@ def test_a_model_takes_them_where_it_states_none_itself(hemisphere):
         add_coefficients(spec, {"ball2": found["ball"]})
 
 
+def test_each_of_several_vehicles_names_a_dataset_of_its_own(tmp_path):
+    text = """<mujoco><worldbody><body name="hull"><freejoint/>
+    <geom type="sphere" size=".3" mass="50" pos="0 0 1e-3"/></body></worldbody></mujoco>"""
+    (tmp_path / "ball.xml").write_text(text)
+    names = [f"ball__{dof}" for dof in DOFS]
+    write_dataset(tmp_path / "ball.nc", names)
+    vehicles = [
+        {"model": "ball.xml", "name": "without"},
+        {"model": "ball.xml", "name": "with", "start": {"position": [2.0, 0.0, 0.0]}},
+    ]
+    vehicles[1]["coefficients"] = {"file": "ball.nc", "period": 6.0, "body": "hull"}
+    simulation = Simulation(scene_from_table({"title": "t", "vehicles": vehicles}, folder=tmp_path))
+    added = simulation.buoyancy.added_mass
+    assert added.bodies.tolist() == [simulation.model.body("with/hull").id]
+    assert added.matrices[0].reshape(6, 6).diagonal() == pytest.approx(np.arange(1.0, 7.0))
+    assert "radiation" in simulation.buoyancy.causes
+
+
 def test_a_scene_names_a_dataset(hemisphere, tmp_path):
     (tmp_path / "ball.xml").write_text(
         '<mujoco><worldbody><body name="float">'

@@ -110,7 +110,7 @@ def test_vehicles_without_a_name_take_that_of_their_file_numbered_where_it_comes
         ),
         (
             ["vehicles.1.mass=-1"],
-            "scene 'scene': vehicles.1: mass is -1 kg; it must be positive",
+            "scene 'scene': vehicles.1: mass is -1.0; it must be above 0",
         ),
         (
             ["vehicles.1.start.rol=1"],
@@ -205,6 +205,23 @@ def test_each_vehicle_moves_as_it_does_alone(folder):
         assert one.attitude == pytest.approx(alone.attitude, abs=1e-9)
         assert one.draft == pytest.approx(alone.draft, abs=1e-9)
         assert one.energy.total == pytest.approx(alone.energy.total, abs=1e-7)
+
+
+def test_each_vehicle_keeps_what_its_file_says_of_its_added_mass_and_drag():
+    first = SceneVehicle(model="bluerov2_heavy", name="first", start=Start(position=(0, 0, -1)))
+    start = Start(position=(5.0, 0.0, -2.0), pitch=0.3, keyframe="ahead")
+    second = SceneVehicle(model="bluerov2_heavy", name="second", start=start)
+    other = SceneVehicle(model="sauvc_auv", start=Start(position=(9.0, 0.0, -1.0)))
+    together = Simulation(Scene(title="t", vehicles=(first, second, other), duration=0.5))
+    alone = Simulation(Scene(title="t", vehicle="bluerov2_heavy", start=start, duration=0.5))
+    assert together.vehicles["second"].displacement == pytest.approx(alone.displacement, rel=1e-12)
+    *_, last = together.frames()
+    *_, wanted = alone.frames()
+    one = last.vehicles["second"]
+    assert one.centre_of_mass == pytest.approx(wanted.centre_of_mass, abs=1e-12)
+    assert one.attitude == pytest.approx(wanted.attitude, abs=1e-12)
+    assert one.energy.total == pytest.approx(wanted.energy.total, rel=1e-9)
+    assert one.forces["drag"] == pytest.approx(wanted.loads.by_cause["drag"][1, :3], rel=1e-9)
 
 
 def test_keyframes_and_controls_are_each_vehicles_own(folder):
