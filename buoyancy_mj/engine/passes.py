@@ -77,7 +77,7 @@ def evaluate(
     passes.begin(load_model.arrays, record)
     for load in load_model.acting:
         load(arrays)
-    passes.end(engine.time, record)
+    passes.end(engine, record)
 
 
 def apply(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, last: Pass) -> None:

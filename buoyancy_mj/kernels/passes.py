@@ -101,16 +101,16 @@ def begin(loads, record):
 
 
 @njit(cache=True, error_model="numpy")
-def end(time, record):
-    """Sum up the causes at a time [s]."""
+def end(engine, record):
+    """Sum up the causes, and note of what instant they are."""
     total = record.total
     total[:, :] = 0.0
     for cause in record.causes:
         for b in range(cause.shape[0]):
             for i in range(6):
                 total[b, i] += cause[b, i]
-    record.instant[0] = time
-    record.xipos[:, :] = bodies.xipos
+    record.instant[0] = engine.time
+    record.xipos[:, :] = engine.bodies.xipos
 
 
 @register_jitable
