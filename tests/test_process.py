@@ -460,7 +460,7 @@ def test_a_full_standard_output_is_one_sentence():
             stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=300,
         )  # fmt: skip
     assert done.returncode == 1
-    assert done.stderr == "error: cannot read or write: No space left on device\n"
+    assert done.stderr == "error: the output cannot be read or written: No space left on device\n"
 
 
 def test_memory_that_runs_out_is_one_sentence(monkeypatch):
