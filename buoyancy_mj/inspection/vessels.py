@@ -104,9 +104,9 @@ def inspect_vessel(vessel: Vessel, hulls: Sequence[Hull]) -> VesselInspection:
     if vessel.free and vessel.reserve >= -NEUTRAL * vessel.mass:
         try:
             rest = find_equilibrium(vessel)
-            rests = find_equilibria(vessel)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", BuoyancyWarning)
+                rests = find_equilibria(vessel)
                 righting = compute_righting_arm(
                     vessel,
                     np.radians(np.arange(181.0)),
