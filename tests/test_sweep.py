@@ -294,7 +294,7 @@ def test_a_sweep_whose_runs_all_fail_fails(tmp_path):
         assert result.stdout.replace("\n", "") == f"2 runs, 2 failed: {out}"
         assert result.stderr == (
             "error: all 2 runs failed; the first: scene 'hourglass_drop_still': "
-            "mass is -2 kg; it must be positive\n"
+            "mass is -2.0; it must be above 0\n"
         )
 
 
