@@ -520,7 +520,9 @@ def test_a_full_output_is_told_on_the_other():
             stdout=full, stderr=subprocess.PIPE, text=True, check=False,
         )  # fmt: skip
     assert ended.returncode == 1
-    assert ended.stderr.endswith("error: the output cannot be written: No space left on device\n")
+    assert ended.stderr.endswith(
+        "error: the output cannot be read or written: No space left on device\n"
+    )
     assert "Traceback" not in ended.stderr
 
 

@@ -124,17 +124,18 @@ class Journal:
         if list(table.header) != self.header:
             self._refuse(path)
         for row in table.rows:
-            if not str(row["run"]).isdecimal():
-                raise SweepError(
-                    f"'{path}' holds a run {describe(row['run'])}, which is no number; "
-                    "give another --out, or remove it"
-                )
             if row["scene"] != scene:
                 raise SweepError(
                     f"'{path}' holds runs of another scene, or with other flags; give another "
                     "--out, or remove it"
                 )
-            self.rows[int(row["run"])] = _as_texts(row)
+            try:
+                self.rows[int(row["run"])] = _as_texts(row)
+            except (TypeError, ValueError):
+                raise SweepError(
+                    f"'{path}' holds a run {describe(row['run'])}, which is no number; "
+                    "give another --out, or remove it"
+                ) from None
 
     def _refuse(self, path: Path) -> None:
         raise SweepError(
