@@ -24,6 +24,7 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.engine import callbacks, leases, passes
 from buoyancy_mj.engine.compiled import THREADS
+from buoyancy_mj.kernels import multibody
 
 BOX = """<mujoco><option timestep="0.002"/><worldbody>
   <body name="box" pos="0 0 -3"><freejoint/>
@@ -381,6 +382,15 @@ def test_geoms_that_are_resized_displace_what_they_are_then(native):
             assert data.qfrc_passive[2] == pytest.approx(factor**3 * 24.0 * 9.81)
             assert water.loads(data).total.volume == pytest.approx(factor**3 * 0.024)
             assert water.hulls[0].displaced_volume == pytest.approx(factor**3 * 0.024)
+
+
+@pytest.mark.parametrize("count", [1, 64, 100])
+def test_no_factor_on_all_sizes_nor_an_exchange_of_two_goes_unnoticed(count):
+    sizes = np.random.default_rng(count).uniform(0.01, 2.0, (count, 3))
+    others = [factor * sizes for factor in (0.25, 0.5, 2.0, 4.0, 1.0 + 1e-15)]
+    others += [sizes[:, [1, 0, 2]], np.roll(sizes, 1), -sizes]
+    sums = [multibody.sum_sizes(some.view(np.int64)) for some in (sizes, *map(np.array, others))]
+    assert len(set(sums)) == len(sums)
 
 
 def test_resized_geoms_have_the_drag_and_the_added_mass_of_new_ones():
