@@ -36,13 +36,16 @@ from buoyancy_mj.loads.loads import Portion as Portion
 from buoyancy_mj.meshes.mesh import TriMesh as TriMesh
 from buoyancy_mj.meshes.repair import repair as repair
 from buoyancy_mj.records import show_fields as _show_fields
+from buoyancy_mj.scenes.fleet import Vehicle as Vehicle
 from buoyancy_mj.scenes.frames import Frame as Frame
+from buoyancy_mj.scenes.frames import VehicleFrame as VehicleFrame
 from buoyancy_mj.scenes.scene import Scene as Scene
 from buoyancy_mj.scenes.scene import read_scene as read_scene
 from buoyancy_mj.scenes.scene_vehicle import SceneVehicle as SceneVehicle
 from buoyancy_mj.scenes.scene_vehicle import Start as Start
 from buoyancy_mj.scenes.simulation import Simulation as Simulation
 from buoyancy_mj.scenes.summary import Summary as Summary
+from buoyancy_mj.scenes.summary import VehicleSummary as VehicleSummary
 from buoyancy_mj.sea.currents import CurrentProfile as CurrentProfile
 from buoyancy_mj.sea.currents import CurrentSeries as CurrentSeries
 from buoyancy_mj.sea.spectra import JonswapSea as JonswapSea

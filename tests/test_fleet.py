@@ -224,6 +224,37 @@ def test_each_vehicle_keeps_what_its_file_says_of_its_added_mass_and_drag():
     assert one.forces["drag"] == pytest.approx(wanted.loads.by_cause["drag"][1, :3], rel=1e-9)
 
 
+URDF = """<robot name="r"><link name="base"><inertial><mass value="4"/>
+<inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><box size=".4 .3 .1"/></geometry></collision></link></robot>"""
+FUSED = """<mujoco><compiler fusestatic="true"/><worldbody>
+<body name="pier" pos="9 9 0"><geom size=".3"/></body>
+<body name="boat"><freejoint/><geom type="box" size=".2 .1 .1" mass="7"/>
+<body name="mast" pos="0 0 .3"><geom type="box" size=".01 .01 .1" mass="1"/></body>
+<body name="fin" pos="-.3 0 0"><joint name="fin"/><geom size=".02" mass=".1"/></body></body>
+</worldbody><actuator><motor joint="fin"/></actuator></mujoco>"""
+BUOYS = """<mujoco><worldbody><replicate count="2" offset="1 0 0">
+<body name="buoy" pos="0 5 0"><freejoint/><geom size=".2" mass="10"/></body></replicate>
+</worldbody></mujoco>"""
+
+
+def test_files_of_all_kinds_stand_side_by_side(folder):
+    for name, text in (("robot.urdf", URDF), ("fused.xml", FUSED), ("buoys.xml", BUOYS)):
+        (folder / name).write_text(text)
+    vehicles = [
+        SceneVehicle(model=model, start=Start(position=(4.0 * i, 0.0, 0.0)), mass=5.0 + i)
+        for i, model in enumerate(("fused.xml", "robot.urdf", "buoys.xml", "box.xml"))
+    ]
+    simulation = Simulation(Scene(title="t", vehicles=vehicles, folder=folder, duration=0.1))
+    found = {name: vehicle.mass for name, vehicle in simulation.vehicles.items()}
+    assert found == pytest.approx(
+        {"fused": 5.0, "robot": 6.0, "buoys/buoy0": 3.5, "buoys/buoy1": 3.5, "box": 8.0}
+    )
+    frame = next(simulation.frames())
+    places = [frame.data.xpos[vehicle.root, 0] for vehicle in simulation.vehicles.values()]
+    assert places == pytest.approx([0.0, 4.0, 8.0, 9.0, 12.0])
+
+
 def test_keyframes_and_controls_are_each_vehicles_own(folder):
     more = ARM.format("")
     rest = """<actuator><motor joint="hinge"/></actuator>

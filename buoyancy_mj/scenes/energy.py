@@ -7,7 +7,6 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.loads.loads import Loads
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.sea.water import Water
@@ -42,7 +41,7 @@ class EnergyMeter:
     """Finds the energy of one vehicle of a model.
 
     Args:
-        model: the model, which may change its masses between frames.
+        model: the model.
         vehicle: the vehicle.
     """
 
@@ -74,7 +73,7 @@ class EnergyMeter:
     def _potential(self, data: mujoco.MjData) -> float:
         """Potential energy of the vehicle in gravity and in its springs [J]."""
         bodies = self._vehicle.bodies
-        weights = find_weighing_masses(self._model)[bodies] * self._vehicle.gravity
+        weights = self._vehicle.weighing_masses * self._vehicle.gravity
         return float(weights @ data.xipos[bodies, 2]) + self._spring_energy(data)
 
     def _spring_energy(self, data: mujoco.MjData) -> float:

@@ -27,6 +27,8 @@ from buoyancy_mj.viz.water_surface import SurfaceDrawing
 
 FLUSH_EVERY = 0.25
 """Simulated time [s] between writes to the file; a run that is killed loses no more."""
+CLOSER = 0.6
+"""Distance of the eye from several vehicles over that from one as long as all of them."""
 
 
 class Recording:
@@ -151,7 +153,9 @@ class Recording:
         vehicles = self.simulation.vehicles.values()
         middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
         look_at = np.array([*middle[:2], scene.water.level])
-        layout = run_blueprint(scene.title, look_at, self._size, self._several)
+        # vehicles apart from each other fill less of the picture than one
+        size = CLOSER * self._size if self._several else self._size
+        layout = run_blueprint(scene.title, look_at, size, self._several)
         for stream in self._streams:
             stream.send_blueprint(layout)
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
