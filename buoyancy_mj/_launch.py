@@ -10,14 +10,17 @@ def _prepare() -> None:
     """Make this process safe, if it was started as the command line of this package.
 
     `python -m buoyancy_mj` looks for modules in the working folder first, where a file may have the
-    name of any module that is imported. Ctrl-C during an import would leave a traceback.
+    name of any module that is imported. Ctrl-C during an import would leave a traceback, or go by.
     """
-    if _is_module():
-        if not sys.flags.safe_path:
-            # where Python has put the working folder
-            del sys.path[0]
-    elif not os.path.basename("".join(sys.argv[:1])).startswith("buoyancy-mj"):
+    is_module = _is_module()
+    if not is_module and not os.path.basename("".join(sys.argv[:1])).startswith("buoyancy-mj"):
         return
+    if is_module and not sys.flags.safe_path:
+        # where Python has put the working folder
+        del sys.path[0]
+    _drop_empty_parts()
+    # for other processes: glfw starts a Python to look at its library
+    os.environ["PYTHONSAFEPATH"] = "1"
 
     # Numba obeys a .numba_config.yaml in the working folder, but not against the environment
     for name in ("NUMBA_CACHE_DIR", "NUMBA_CACHE_LOCATOR_CLASSES"):
@@ -32,6 +35,21 @@ def _prepare() -> None:
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # some modules catch whatever is raised while they are imported
         signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+
+
+def _drop_empty_parts() -> None:
+    """Take empty parts out of PYTHONPATH, for Python takes them for the working folder.
+
+    `export PYTHONPATH=$PYTHONPATH:/opt/mine` leaves one where there was no PYTHONPATH.
+    """
+    parts = os.environ.get("PYTHONPATH", "").split(os.pathsep)
+    named = [part for part in parts if part]
+    if not named or len(named) == len(parts):
+        return
+    os.environ["PYTHONPATH"] = os.pathsep.join(named)
+    here = os.getcwd()
+    if here in sys.path and here not in map(os.path.abspath, named):
+        sys.path.remove(here)
 
 
 def _is_module() -> bool:

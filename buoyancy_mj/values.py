@@ -143,11 +143,14 @@ def read_array(
             texts are no numbers here.
     """
     array = _to_array(value)
-    if array is None or not any(_has_shape(array, shape) for shape in shapes):
+    is_right = array is not None and (
+        array.shape in shapes or any(_has_shape(array, shape) for shape in shapes)
+    )
+    if array is None or not is_right:
         got = "" if array is None else f", of shape {array.shape}"
         wanted = " or ".join(map(_show_shape, shapes))
         raise error(f"{name} is {describe(value)}{got}; it must be numbers of shape {wanted}")
-    if finite and not np.isfinite(array).all():
+    if finite and not _is_finite(array):
         raise error(f"{name} holds {array[~np.isfinite(array)][0]}; its numbers must be finite")
     return array
 
@@ -166,6 +169,8 @@ def _to_array(value: object) -> NDArray[np.float64] | None:
     """Real numbers as an array of floats; None for anything else."""
     try:
         array = np.asarray(value)
+        if array.dtype.char == "d":
+            return array
         # whole numbers beyond 64 bits come as objects
         if array.dtype == object and all(map(is_number, array.ravel())):
             array = array.astype(float)
@@ -174,6 +179,12 @@ def _to_array(value: object) -> NDArray[np.float64] | None:
     if array.dtype.kind not in "iuf" and array.size:
         return None
     return array.astype(float, copy=False)
+
+
+def _is_finite(array: NDArray[np.float64]) -> bool:
+    """Whether all numbers of an array are finite; of a few, their sum mostly says so."""
+    is_sure = array.size <= 16 and math.isfinite(sum(array.ravel().tolist()))
+    return is_sure or bool(np.isfinite(array).all())
 
 
 def _has_shape(array: NDArray[np.float64], shape: tuple[int, ...]) -> bool:

@@ -1,8 +1,13 @@
 """The water in `xfrc_applied`: the same motion, sensors that see it, and whose a row is."""
 
+import contextlib
+import functools
+
 import mujoco
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from buoyancy_mj import (
@@ -91,6 +96,19 @@ def test_bodies_with_added_mass_do_too(integrator):
     assert np.abs(end - alike(integrator=integrator)).max() > 1e-3
 
 
+def test_kinetic_energy_counts_the_added_mass_either_way():
+    energies = []
+    for through in ("qfrc_passive", "xfrc_applied"):
+        model, data = raft(more="<option><flag energy='enable'/></option>")
+        data.qvel[:] = 1.0
+        with Buoyancy(model, SEA, added_mass=ADDED_MASS).installed(through=through):
+            mujoco.mj_forward(model, data)
+        energies.append(data.energy[1])
+    mujoco.mj_forward(model, data)
+    assert energies[1] == pytest.approx(energies[0], rel=1e-12)
+    assert energies[1] > data.energy[1] + 10.0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(catalog.scenes()))
 def test_shipped_scenes_do_too(name):
@@ -170,18 +188,23 @@ def test_the_engine_counts_it_among_external_forces():
     assert np.abs(data.cfrc_ext[1]).max() > 100.0
 
 
-def test_added_mass_that_a_force_sensor_would_misread_is_refused():
-    model = mujoco.MjModel.from_xml_string(RIG)
-    message = (
-        "^the sensor 'number 0' would not read the part of the added mass that goes with "
-        "accelerations, which stands in the mass matrix and not in xfrc_applied: leave out the "
-        r"sensor, or the added mass \(added_mass='none'\)$"
-    )
-    with (
-        pytest.raises(ModelError, match=message),
-        Buoyancy(model, added_mass="estimate").installed(through="xfrc_applied"),
-    ):
-        pass
+def test_added_mass_that_a_sensor_would_misread_is_refused():
+    kinetic = RAFT.format(integrator="Euler", more="<sensor><e_kinetic name='e'/></sensor>")
+    for text, name in ((RIG, "number 0"), (kinetic, "e")):
+        model = mujoco.MjModel.from_xml_string(text)
+        message = (
+            f"^the sensor '{name}' would not read the added mass, which stands in the mass matrix "
+            "and not in xfrc_applied: leave out the sensor, or the added mass "
+            r"\(added_mass='none'\)$"
+        )
+        added_mass = {mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_BODY, 1): [1.0] * 6}
+        with (
+            pytest.raises(ModelError, match=message),
+            Buoyancy(model, added_mass=added_mass).installed(through="xfrc_applied"),
+        ):
+            pass
+        with Buoyancy(model).installed(through="xfrc_applied"):
+            pass
 
 
 # whose a row is -----------------------------------------------------------------------------------
@@ -400,6 +423,72 @@ def test_the_seal_is_in_a_row_that_mujoco_does_not_read_and_too_small_to_count()
     data.xfrc_applied[0] = 1e9
     mujoco.mj_forward(model, data)
     assert np.array_equal(data.qacc, without)
+
+
+class Twin:
+    """A simulation and the states it saved, through either array."""
+
+    def __init__(self, model, water, through):
+        self.model, self.water, self.through = model, water, through
+        self.data, self.other = mujoco.MjData(model), mujoco.MjData(model)
+        self.saved = np.zeros(mujoco.mj_stateSize(model, INTEGRATION))
+        self.save(0, 0, 0.0)
+
+    def step(self, _row, _column, _value):
+        with self.water.installed(through=self.through):
+            mujoco.mj_step(self.model, self.data)
+
+    def assign(self, row, column, value):
+        self.data.xfrc_applied[row, column:] = value
+
+    def add(self, row, column, value):
+        through = self.through == "xfrc_applied"
+        rows = self.water.external(self.data) if through else self.data.xfrc_applied
+        rows[row, column] += value
+
+    def clear(self, _row, _column, _value):
+        self.data.xfrc_applied[:] = 0.0
+
+    def reset(self, _row, _column, _value):
+        mujoco.mj_resetData(self.model, self.data)
+
+    def save(self, _row, _column, _value):
+        mujoco.mj_getState(self.model, self.data, self.saved, INTEGRATION)
+
+    def restore(self, _row, _column, _value):
+        mujoco.mj_setState(self.model, self.data, self.saved, INTEGRATION)
+
+    def swap(self, _row, _column, _value):
+        mujoco.mj_copyData(self.other, self.model, self.data)
+        self.data, self.other = self.other, self.data
+
+
+@functools.cache
+def shared_water():
+    return Buoyancy(raft()[0], SEA)
+
+
+DEEDS = st.tuples(
+    st.sampled_from(["step", "step", "assign", "add", "clear", "reset", "save", "restore", "swap"]),
+    st.integers(1, 3),
+    st.integers(0, 5),
+    st.floats(-50.0, 50.0),
+)
+
+
+@pytest.mark.parametrize("stays", [True, False], ids=["one block", "a block for each step"])
+@settings(max_examples=60)
+@given(deeds=st.lists(DEEDS, max_size=25))
+def test_whatever_others_do_the_motion_is_the_same(stays, deeds):
+    ends = []
+    for through in ("qfrc_passive", "xfrc_applied"):
+        twin = Twin(shared_water().model, shared_water(), through)
+        block = twin.water.installed(through=through) if stays else contextlib.nullcontext()
+        with block:
+            for deed, *how in [*deeds, ("step", 0, 0, 0.0)]:
+                getattr(twin, deed)(*how)
+        ends.append(np.r_[state(twin.data), twin.data.xfrc_applied.ravel()])
+    assert ends[1] == pytest.approx(ends[0], rel=1e-12, abs=1e-12)
 
 
 # its end ------------------------------------------------------------------------------------------

@@ -37,6 +37,7 @@ from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.loads.damping import VISCOUS
 from buoyancy_mj.scenes import ranges
 from buoyancy_mj.scenes.scene import KEYS, Scene
+from buoyancy_mj.scenes.scene_vehicle import SceneVehicle
 from buoyancy_mj.settings.config import KEYS as PLUGIN_KEYS
 from buoyancy_mj.settings.config import parse_plugin_config
 from buoyancy_mj.settings.toml import CURRENTS, WAVES
@@ -117,10 +118,13 @@ def keys_of_scene():
     # plain keys, of the scene and of tables that have no kinds
     for cls, path in ((Scene, ""), (Start, "start."), (Water, "water.")):
         for name, kind in types_of(cls):
-            if path or name in KEYS:
+            if path or name in {*KEYS} - {"vehicles"}:
                 yield path + name, kind, f"{path}{name}=%s"
     for name in ("geoms", "hull", "fill"):
         yield name, tuple, f"{name}=%s"
+    for name, kind in types_of(SceneVehicle):
+        model = "" if name == "model" else 'model="hourglass", '
+        yield f"vehicles.{name}", kind, f"vehicles=[{{{model}{name}=%s}}]"
     for name, kind in types_of(CoefficientsFile):
         rest = "".join(f", {key}={NEEDED[key]}" for key in ("file", "period") if key != name)
         yield f"coefficients.{name}", kind, f"coefficients={{{name}=%s{rest}}}"
@@ -175,12 +179,13 @@ def test_bad_values_of_a_key_are_refused_by_name(scene, key, kind, setting):
     [
         "water=%s", "water.waves=%s", "water.waves=[%s]", "water.current=%s", "start=%s",
         "method=%s", "method={kind=%s}", "damping=%s", "damping={kind=%s}", "coefficients=%s",
+        "vehicles=%s", "vehicles=[%s]",
         "water.waves=[{kind=%s}]", "water.current={kind=%s}",
     ],
 )  # fmt: skip
 def test_bad_tables_are_refused_by_name(scene, setting):
     # an empty table is one, and so is a list of no waves; true is damping
-    sound = {"{}", "[]", "true"}
+    sound = {"{}", "[]", "true"} if setting != "vehicles=[%s]" else set()
     for value in (WORDLESS | TEXTS | NUMBERS).values():
         if value in sound or (setting == "method={kind=%s}" and value == '"exact"'):
             continue
@@ -397,7 +402,7 @@ def test_numbers_that_are_none_are_refused_by_the_flag(run, tmp_path, flag):
         ("sweep a --over nix=0:1:2 --out a.csv", "unknown key 'nix'; possible: added_mass"),
         (
             "sweep a --over mass=1:2:2 --geoms nix --out a.csv",
-            "all 2 runs failed, one of them beca",
+            "all 2 runs failed; the first: no mo",
         ),
         ("inspect hourglass --water waves=[]", "--water: unknown key 'waves'; possible: density"),
         ("inspect hourglass --water=", "--water '' says nothing; write KEY=VALUE, as in density"),
@@ -424,9 +429,12 @@ def test_bad_arguments_get_one_sentence_and_leave_nothing(run, tmp_path, argumen
 def test_a_full_disk_under_a_sweep_keeps_the_rows_and_the_sweep_goes_on(run, tmp_path):
     over = ["sweep", "hourglass_drop_still", "--over", "mass=1:2:3", "--duration", "0.02"]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(os, "fsync", fail_after(1, os.fsync))
+        patch.setattr(os, "fsync", fail_after(2, os.fsync))
         result = run([*over, "--out", "rows.csv"])
-    check_refused(result, "cannot keep results in 'rows.csv': No space left on device; rows up")
+    check_refused(
+        result,
+        "cannot write to 'rows.csv': No space left on device; 'rows.csv' holds 1 row, and the same",
+    )
     assert (tmp_path / "rows.csv").read_text().count("done") >= 1
     assert run([*over, "--out", "rows.csv"]).exit_code == 0
     assert (tmp_path / "rows.csv").read_text().count("done") == 3
@@ -437,7 +445,7 @@ def test_a_full_disk_under_a_table_of_parquet_keeps_the_rows(run, tmp_path):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pyarrow.parquet, "write_table", fail_after(0, pyarrow.parquet.write_table))
         result = run([*over, "--out", "rows.parquet"])
-    check_refused(result, "cannot write 'rows.parquet': [Errno 28] No space left on device; all")
+    check_refused(result, "cannot write 'rows.parquet': [Errno 28] No space left on device")
     assert run([*over, "--out", "rows.parquet"]).exit_code == 0
     assert [path.name for path in tmp_path.iterdir()] == ["rows.parquet"]
 
@@ -457,7 +465,9 @@ def fail_after(count, function):
 def test_results_do_not_go_to_a_device(run, tmp_path):
     (tmp_path / "full.csv").symlink_to("/dev/full")
     result = run(["sweep", "hourglass_drop_still", "--over", "mass=1:2:2", "--out", "full.csv"])
-    check_refused(result, "cannot keep results in 'full.csv': it is no file; give another --out")
+    check_refused(
+        result, "cannot keep results in 'full.csv': it is no regular file; give another --out"
+    )
 
 
 def test_results_that_are_none_are_refused(run, tmp_path):
@@ -510,7 +520,9 @@ def test_a_full_output_is_told_on_the_other():
             stdout=full, stderr=subprocess.PIPE, text=True, check=False,
         )  # fmt: skip
     assert ended.returncode == 1
-    assert ended.stderr.endswith("error: the output cannot be written: No space left on device\n")
+    assert ended.stderr.endswith(
+        "error: the output cannot be read or written: No space left on device\n"
+    )
     assert "Traceback" not in ended.stderr
 
 

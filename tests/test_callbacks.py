@@ -24,6 +24,7 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.engine import callbacks, leases, passes
 from buoyancy_mj.engine.compiled import THREADS
+from buoyancy_mj.kernels import multibody
 
 BOX = """<mujoco><option timestep="0.002"/><worldbody>
   <body name="box" pos="0 0 -3"><freejoint/>
@@ -313,6 +314,44 @@ def test_the_loads_of_data_stay_while_others_are_stepped(native):
 
 
 @pytest.mark.parametrize("native", [True, False])
+def test_loads_are_not_those_of_data_that_lay_there_before_nor_of_other_poses(native):
+    model, _ = box()
+    water = Buoyancy(model)
+    with water.installed(native=native):
+        for _ in range(10):
+            data = mujoco.MjData(model)
+            with pytest.raises(EngineError):
+                water.loads(data)
+            mujoco.mj_forward(model, data)
+            water.loads(data)
+            del data
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        data.qpos[2] = 5.0
+        mujoco.mj_kinematics(model, data)
+        message = (
+            "^the bodies of these data are elsewhere than in the last pass of this water; call "
+            "mj_forward while it acts, or use evaluate$"
+        )
+        with pytest.raises(EngineError, match=message):
+            water.loads(data)
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast", "discrete"])
+@pytest.mark.parametrize(
+    "way", [{}, {"native": False}, {"through": "xfrc_applied"}], ids=["compiled", "python", "xfrc"]
+)
+def test_loads_are_there_after_a_step_of_each_integrator(integrator, way):
+    model = mujoco.MjModel.from_xml_string(BOX.replace("002", f'002" integrator="{integrator}'))
+    data = mujoco.MjData(model)
+    water = Buoyancy(model)
+    with water.installed(**way):
+        for _ in range(3):
+            mujoco.mj_step(model, data)
+            assert water.loads(data).total.volume == pytest.approx(0.024)
+
+
+@pytest.mark.parametrize("native", [True, False])
 def test_the_loads_after_a_reset_are_those_of_the_last_pass(native):
     model, data = box()
     other = mujoco.MjData(model)
@@ -343,6 +382,15 @@ def test_geoms_that_are_resized_displace_what_they_are_then(native):
             assert data.qfrc_passive[2] == pytest.approx(factor**3 * 24.0 * 9.81)
             assert water.loads(data).total.volume == pytest.approx(factor**3 * 0.024)
             assert water.hulls[0].displaced_volume == pytest.approx(factor**3 * 0.024)
+
+
+@pytest.mark.parametrize("count", [1, 64, 100])
+def test_no_factor_on_all_sizes_nor_an_exchange_of_two_goes_unnoticed(count):
+    sizes = np.random.default_rng(count).uniform(0.01, 2.0, (count, 3))
+    others = [factor * sizes for factor in (0.25, 0.5, 2.0, 4.0, 1.0 + 1e-15)]
+    others += [sizes[:, [1, 0, 2]], np.roll(sizes, 1), -sizes]
+    sums = [multibody.sum_sizes(some.view(np.int64)) for some in (sizes, *map(np.array, others))]
+    assert len(set(sums)) == len(sums)
 
 
 def test_resized_geoms_have_the_drag_and_the_added_mass_of_new_ones():

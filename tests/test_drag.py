@@ -188,7 +188,7 @@ def test_damping_that_the_model_gives_replaces_the_estimate_of_that_body():
         (
             "linear_damping:rov",
             "linear_damping:auv",
-            "linear damping is given for body 'auv', which has no hull .*possible: rov",
+            "linear damping is given for body 'auv', which the model does not have; possible: rov",
         ),
     ],
 )

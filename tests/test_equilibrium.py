@@ -5,6 +5,7 @@ import math
 import mujoco
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -17,14 +18,16 @@ from buoyancy_mj import (
     SceneError,
     Simulation,
     Start,
+    TriMesh,
     Water,
     equilibria,
     equilibrium,
 )
+from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
-from tests import naive, vessels
+from tests import dense_search, naive, vessels
 
 
 def tilted(roll, pitch=0.0, yaw=0.0, place=(0.0, 0.0, 0.0)):
@@ -88,6 +91,77 @@ def test_a_cube_of_half_density_floats_on_any_of_its_corners():
     assert downs == pytest.approx(np.full((8, 3), 1 / math.sqrt(3)), abs=1e-6)
 
 
+def uprights(found):
+    """The direction of the vessel that points up, for each rest pose (n, 3)."""
+    return np.array(
+        [Rotation.from_quat(one.qpos[3:7], scalar_first=True).as_matrix()[2] for one in found]
+    )
+
+
+def floats_on_a_face(ratio):
+    """GM = BM - BG of a cube with side 1 is 1 / (12 s) - (1 - s) / 2 at the density s."""
+    return 1.0 / (12.0 * ratio) > 0.5 * (1.0 - ratio)
+
+
+def floats_on_a_corner(ratio):
+    """Whether a cube is stable with a diagonal upright.
+
+    The planes of the three wet faces meet the surface at a > 1 along each edge: a tetrahedron, less
+    three that are a - 1 large. Its moments give GM V = sqrt(3) / 12 b (1 - b) (1 - 2 b + 2 b^2),
+    with b = a - 1. Up to a density of 1/6 a is 1 or less, and GM = sqrt(3) / 2 (a - 1).
+    """
+    return 1.0 / 6.0 < ratio < 5.0 / 6.0
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.18, 0.2, 0.21, 0.25, 0.5, 0.79, 0.8, 0.82, 0.9])
+def test_a_cube_floats_on_faces_on_corners_or_on_both(ratio):
+    # how the cube lies in its frame does not matter
+    turn = Rotation.random(random_state=3).as_matrix()
+    cube = shapes.box((0.5, 0.5, 0.5)).transformed(turn, np.zeros(3))
+    found = equilibria(vessels.of_mesh(cube, 1000.0 * ratio, inertia=[1000.0 * ratio / 6.0] * 3))
+    assert {one.stability for one in found} == {"stable"}
+    ups = np.sort(np.abs(uprights(found) @ turn), axis=1)
+    on_face = np.abs(ups - [0.0, 0.0, 1.0]).max(axis=1) < 1e-3
+    on_corner = np.abs(ups - 1.0 / math.sqrt(3.0)).max(axis=1) < 1e-3
+    assert on_face.sum() == 6 * floats_on_a_face(ratio)
+    assert on_corner.sum() == 8 * floats_on_a_corner(ratio)
+    assert len(found) == on_face.sum() + on_corner.sum()
+
+
+def polytope(seed):
+    """A closed mesh with flat faces: the convex hull of points on an ellipsoid."""
+    rng = np.random.default_rng(seed)
+    points = rng.normal(size=(rng.integers(6, 16), 3))
+    points *= rng.uniform(0.3, 1.0, 3) / np.linalg.norm(points, axis=1)[:, None]
+    return naive.trimesh_hull(trimesh.convex.convex_hull(points))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_all_rest_poses_are_those_that_a_dense_search_finds(seed):
+    rng = np.random.default_rng(seed)
+    mesh = vessels.dented(seed) if seed % 8 == 0 else polytope(seed)
+    volume = rng.uniform(0.05, 0.95) * mesh.volume
+    centre = mesh.centroid + rng.integers(0, 2) * rng.uniform(-0.15, 0.15, 3) * mesh.extents
+    compare_with_dense_search(mesh, volume, centre, 4000)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.05, 0.19, 0.21, 0.3, 0.7, 0.79, 0.81, 0.95])
+def test_all_rest_poses_of_a_cube_are_those_that_a_dense_search_finds(ratio):
+    turn = Rotation.random(random_state=5).as_matrix()
+    cube = shapes.box((0.5, 0.5, 0.5)).transformed(turn, np.zeros(3))
+    compare_with_dense_search(cube, ratio, np.zeros(3), 12000)
+
+
+def compare_with_dense_search(mesh, volume, centre, count):
+    found = uprights(equilibria(vessels.of_mesh(mesh, 1000.0 * volume, centre)))
+    dense = dense_search.Floating(mesh, centre, volume).lows(count)
+    apart = np.linalg.norm(found[:, None] - dense, axis=2)
+    assert apart.shape == (len(dense), len(dense))
+    assert max(apart.min(axis=0).max(), apart.min(axis=1).max()) < 2e-3
+
+
 def test_the_tall_cuboid_of_openfoam_stands_only_on_paper():
     # P21: upright GM = -0.095 with B = 0.3 in its narrow direction
     model = vessels.box((0.15, 0.1, 0.25), 15.0)
@@ -101,6 +175,104 @@ def test_the_tall_cuboid_of_openfoam_stands_only_on_paper():
     assert fallen.stable
     assert abs(math.degrees(fallen.hydrostatics.heel)) == pytest.approx(90.0, abs=1e-6)
     assert fallen.energy < upright.energy
+
+
+def test_a_model_as_cad_writes_it_comes_to_rest_upside_down():
+    # top-heavy as drawn, the centre of gravity 7e-8 m off the middle
+    model = mujoco.MjModel.from_xml_path(
+        str(vessels.DATA / "cases" / "top_heavy_cad" / "exported.xml")
+    )
+    found = equilibrium(model)
+    assert found.stable
+    assert abs(math.degrees(found.hydrostatics.heel)) == pytest.approx(180.0, abs=1e-3)
+    assert pytest.approx(0.0729167, abs=1e-6) == found.hydrostatics.GM
+    assert [one.energy for one in equilibria(model)] == pytest.approx([found.energy])
+    # what `inspect` says
+    (vessel,) = inspect_model(model).vessels
+    assert vessel.sentence == (
+        "floats: 140 kg reserve, draft 0.133 m, stable, GM 0.0729 m, "
+        "heel -180.0, trim 0.0 degrees, not as drawn"
+    )
+
+
+TOP_HEAVY = {
+    "box": '<geom type="box" size="0.5 0.15 0.3"/>',
+    "cylinder": '<geom type="cylinder" size="0.15 0.3"/>',
+    "ellipsoid": '<geom type="ellipsoid" size="0.3 0.15 0.3"/>',
+    "torus": None,
+    "prism": None,
+}
+
+
+def top_heavy(name, offset):
+    """A body that stands on its head, its centre of gravity off the middle by an offset [m]."""
+    centre = [0.4 * offset, offset, 0.25]
+    if TOP_HEAVY[name] is not None:
+        place = " ".join(repr(value) for value in centre)
+        inertial = f'<inertial pos="{place}" mass="15" diaginertia="2 2 2"/>'
+        return vessels.of_geoms(TOP_HEAVY[name], inertial)
+    # meshes, which MuJoCo keeps in single precision
+    if name == "torus":
+        # on its rim
+        solid = trimesh.creation.torus(0.3, 0.1, major_sections=32, minor_sections=16)
+        solid.apply_transform(trimesh.transformations.rotation_matrix(0.5 * math.pi, [1, 0, 0]))
+    else:
+        solid = trimesh.creation.cylinder(0.15, 0.6, sections=7)
+    mesh = TriMesh(np.asarray(solid.vertices), np.asarray(solid.faces))
+    return vessels.of_mesh(mesh, 300.0 * mesh.volume, centre)
+
+
+@pytest.mark.parametrize("name", TOP_HEAVY)
+@pytest.mark.parametrize("offset", [0.0, *(10.0**n for n in range(-13, -2))])
+def test_no_asymmetry_is_too_small_to_fall_over(name, offset):
+    model = top_heavy(name, offset)
+    upright = equilibrium(model, stable=False)
+    found = equilibrium(model)
+    assert found.stability != "unstable"
+    assert found.energy < upright.energy - 0.01 * model.body_mass.sum() * 9.81
+    assert any(one.energy == pytest.approx(found.energy, abs=1e-6) for one in equilibria(model))
+
+
+@pytest.mark.parametrize(
+    ("size", "starboard", "bow"), [("0.5 0.15 0.25", -1.0, 0.0), ("0.15 0.5 0.25", 0.0, -1.0)]
+)
+def test_off_an_exact_summit_it_heels_to_starboard_or_trims_by_the_bow(size, starboard, bow):
+    inertial = '<inertial pos="0 0 0" mass="30" diaginertia="1 1 1"/>'
+    model = vessels.of_geoms(f'<geom type="box" size="{size}"/>', inertial)
+    for yaw in (0.0, 1.0):
+        # the height of the bow and of the starboard side
+        x, y, _ = uprights([equilibrium(model, start=tilted(0.0, yaw=yaw))])[0]
+        assert (-y, x) == pytest.approx((starboard, bow), abs=1e-6)
+
+
+@pytest.mark.parametrize("clearance", [-1e-3, -1e-6, 0.0, 1e-8, 1e-6])
+def test_outriggers_that_just_touch_the_water_hold_a_narrow_hull(clearance):
+    # 250 mm draft; without outriggers GM = 0.3^2 / (12 * 0.25) - 0.225 < 0
+    height = 0.05 + clearance
+    model = vessels.of_geoms(
+        '<geom type="box" size="1 .15 .3" pos="0 0 .05"/>'
+        f'<geom type="box" size=".5 .1 .05" pos="0 .6 {height!r}"/>'
+        f'<geom type="box" size=".5 .1 .05" pos="0 -.6 {height!r}"/>',
+        '<inertial pos="0 0 .1" mass="150" diaginertia="10 50 50"/>',
+    )
+    found = equilibrium(model)
+    assert found.stable
+    assert math.degrees(found.hydrostatics.heel) == pytest.approx(0.0, abs=1e-3)
+    assert {one.stability for one in equilibria(model)} == {"stable"}
+
+
+@given(st.integers(0, 10**6), st.floats(0.05, 0.95))
+@settings(max_examples=15, deadline=None)
+def test_where_it_comes_to_rest_is_one_of_all_rest_poses(seed, ratio):
+    rng = np.random.default_rng(seed)
+    mesh = polytope(seed)
+    centre = mesh.centroid + rng.uniform(-0.1, 0.1, 3)
+    model = vessels.of_mesh(mesh, ratio * 1000.0 * mesh.volume, centre)
+    every = uprights(equilibria(model))
+    for _ in range(5):
+        found = equilibrium(model, start=tilted(*rng.uniform(-3, 3, 3)))
+        assert found.stability != "unstable"
+        assert np.linalg.norm(uprights([found]) - every, axis=1).min() < 2e-2
 
 
 @pytest.mark.parametrize("shape", ["cylinder", "capsule"])

@@ -1,5 +1,6 @@
 """Safe to run and to stop: signals end a command, and no file of the working folder is run."""
 
+import contextlib
 import os
 import shutil
 import signal
@@ -33,6 +34,13 @@ def run_python(*arguments, **options):
         [sys.executable, *arguments],
         capture_output=True, text=True, check=False, timeout=300, **options,
     )  # fmt: skip
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """Runs a command in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+    return lambda *arguments: CliRunner().invoke(app, [str(part) for part in arguments])
 
 
 @pytest.fixture
@@ -206,6 +214,29 @@ def test_a_signal_that_comes_where_python_cannot_raise_still_ends_the_command():
     assert finished
 
 
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", str(STILL), "--no-record"],
+        ["sweep", str(STILL), "--over", "mass=9:10:100", "--duration", "0.05", "--out", "x.csv"],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_a_signal_that_other_code_catches_still_ends_the_command(here, monkeypatch, arguments):
+    def deaf(scene, **options):
+        with contextlib.suppress(BaseException):
+            signal.raise_signal(signal.SIGTERM)
+        made.append(scene)
+        return Simulation(scene, **options)
+
+    made = []
+    monkeypatch.setattr("buoyancy_mj.cli.runs.Simulation", deaf)
+    monkeypatch.setattr(sweep, "Simulation", deaf)
+    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    assert here(*arguments).exit_code == 143
+    assert len(made) == 1
+
+
 def test_a_signal_that_must_not_be_raised_here_is_raised_in_a_moment():
     @raise_signals()
     def work():
@@ -281,9 +312,10 @@ def test_a_sweep_stops_while_it_steps(tmp_path, number):
 # the working folder -------------------------------------------------------------------------------
 
 MODULES = (
-    "csv", "email", "enum", "glfw", "importlib_metadata", "llvmlite", "manifold3d", "matplotlib",
-    "mujoco", "networkx", "numba", "numpy", "pyarrow", "random", "rerun", "rerun_bindings",
-    "rerun_cli", "rich", "scipy", "shellingham", "signal", "tempfile", "trimesh", "typer", "uuid",
+    "csv", "ctypes", "email", "enum", "glfw", "importlib_metadata", "json", "llvmlite",
+    "manifold3d", "matplotlib", "mujoco", "networkx", "numba", "numpy", "pyarrow", "random",
+    "rerun", "rerun_bindings", "rerun_cli", "rich", "scipy", "shellingham", "signal", "subprocess",
+    "tempfile", "trimesh", "typer", "uuid",
 )  # fmt: skip
 
 
@@ -332,6 +364,18 @@ def test_no_module_comes_from_the_working_folder(hostile, arguments):
     if "--record" in arguments:
         # with its footer, which a process of its own adds
         assert b"FOOT" in (hostile / "x.rrd").read_bytes()[-32:]
+
+
+@pytest.mark.slow
+def test_an_empty_part_of_the_path_is_not_the_working_folder(hostile):
+    parts = os.pathsep.join(["", os.environ.get("PYTHONPATH", "/nowhere")])
+    done = run_python(
+        "-m", "buoyancy_mj", *["run", "hourglass_drop_still", "--duration", "0.05"],
+        *["--record", "x.rrd"], cwd=hostile, env=os.environ | {"PYTHONPATH": parts},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert executed(hostile) == []
+    assert b"FOOT" in (hostile / "x.rrd").read_bytes()[-32:]
 
 
 @pytest.mark.slow
@@ -416,11 +460,11 @@ def test_a_full_standard_output_is_one_sentence():
             stdout=full, stderr=subprocess.PIPE, text=True, check=False, timeout=300,
         )  # fmt: skip
     assert done.returncode == 1
-    assert done.stderr == "error: cannot read or write: No space left on device\n"
+    assert done.stderr == "error: the output cannot be read or written: No space left on device\n"
 
 
 def test_memory_that_runs_out_is_one_sentence(monkeypatch):
-    def too_much(*_):
+    def too_much(*_, **__):
         raise MemoryError
 
     monkeypatch.setattr("buoyancy_mj.cli.runs.Simulation", too_much)
@@ -432,12 +476,6 @@ def test_memory_that_runs_out_is_one_sentence(monkeypatch):
 
 
 # what is there stays ------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def here(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    return lambda *arguments: CliRunner().invoke(app, [str(part) for part in arguments])
 
 
 def test_a_file_is_replaced_as_a_whole_or_not_at_all(tmp_path):
@@ -547,8 +585,8 @@ def test_a_name_that_cannot_be_printed_is_refused(here, tmp_path, arguments):
     result = here(*arguments)
     assert result.exit_code == 1
     assert result.stderr == (
-        f"error: {arguments[-2]} is {arguments[-1]!r}; a file's name is one line of text, "
-        "without control characters\n"
+        f"error: {arguments[-2]} is {arguments[-1]!r}; it must be one line, "
+        f"without the control character {arguments[-1][1]!r}\n"
     )
     assert list(tmp_path.iterdir()) == []
 

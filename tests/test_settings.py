@@ -267,6 +267,14 @@ def test_numbers_of_numpy_are_numbers_and_truths_are_truths():
         Damping(radiation=1)
 
 
+def test_a_whole_number_may_be_written_with_a_point_so_that_seeds_can_be_swept_over():
+    sea = 'water.waves=[{kind="jonswap", significant_height=0.1, peak_period=3.0}]'
+    scene = catalog.scenes()["auv_waves"]
+    assert read_scene(scene, [sea, "water.waves.0.seed=7.0"]).water.waves[0].seed == 7
+    with pytest.raises(buoyancy_mj.SceneError, match=r"seed is 7.5; needed is a whole number"):
+        read_scene(scene, [sea, "water.waves.0.seed=7.5"])
+
+
 def test_the_rows_of_a_water_cannot_be_changed_for_all_who_share_it():
     sea = JonswapSea(0.5, 4.0)
     water = Water(waves=sea, current=(0.1, 0.0, 0.0))

@@ -253,6 +253,15 @@ def test_waves_too_short_to_be_resolved_over_a_hull_are_refused():
     ):
         exact.PackedHulls(hulls, Water(waves=RegularWave(1e-4, wavelength=0.99 * shortest)))
     exact.PackedHulls(hulls, Water(waves=RegularWave(1e-4, wavelength=1.01 * shortest)))
+    # as many short waves as a pass can sum up, and not one more
+    tide = [RegularWave(1e-5, wavelength=0.3, direction=0.001 * n) for n in range(850)]
+    with pytest.raises(
+        WaterError,
+        match=r"the water has 850 waves that are short for a hull 22\.4 m from corner to corner; "
+        r"beside waves 0\.3 m long it may have 847 at most: give the sea fewer components",
+    ):
+        exact.PackedHulls(hulls, Water(waves=tide))
+    exact.PackedHulls(hulls, Water(waves=tide[:840]))
     # a wave of no height is none
     exact.PackedHulls(hulls, Water(waves=RegularWave(0.0, wavelength=0.02)))
 

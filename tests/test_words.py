@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from buoyancy_mj import (
     Buoyancy,
     BuoyancyWarning,
+    Damping,
     ModelError,
     RegularWave,
     Selection,
@@ -20,12 +21,16 @@ from buoyancy_mj import (
     water_in,
 )
 from buoyancy_mj.engine.instances import PLUGIN
+from buoyancy_mj.hulls.convex_choice import describe_convex_choice
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.replicas import find_originals
 from buoyancy_mj.hulls.selection import add_geom, join_words, rename_patterns, split_words
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.loads.coefficients import Coefficients, add_coefficients
+from buoyancy_mj.loads.damping_arrays import resolve_damping
 from buoyancy_mj.scenes.catalog import model_path
+from buoyancy_mj.scenes.scene import read_scene
+from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
 from buoyancy_mj.settings.settings import Settings
 
@@ -113,7 +118,7 @@ def assert_is_the_rov(model, body):
     assert np.diag(buoyancy.added_mass.matrices[row].reshape(6, 6)) == pytest.approx(
         [20, 30, 40, 1, 1, 1]
     )
-    damping = buoyancy._load_model.arrays.damping
+    damping = resolve_damping(Damping(), model, buoyancy.hulls, 1000.0)
     (row,) = np.flatnonzero(damping.bodies == body)
     assert damping.quadratic[row] == pytest.approx([50, 80, 90, 3, 3, 3])
     assert damping.linear[row] == pytest.approx(np.zeros(6))
@@ -386,6 +391,36 @@ def test_inspection_says_which_text_chose():
     }
 
 
+def scene_in(folder, environment, **texts):
+    """A scene of the vehicle of the case; `texts` are files for its folder."""
+    for name, content in texts.items():
+        (folder / f"{name}.xml").write_text(content)
+    (folder / "scene.toml").write_text(
+        f"""title = "sea"
+        vehicle = "{ENVIRONMENT / "vehicle.xml"}"
+        environment = "{environment}"
+        duration = 0.1
+        """
+    )
+    return Simulation(read_scene(folder / "scene.toml"))
+
+
+@pytest.mark.parametrize("environment", ["buoys.xml", "buoys_say.xml"])
+def test_in_a_scene_each_file_chooses_for_its_own(tmp_path, environment):
+    simulation = scene_in(tmp_path, ENVIRONMENT / environment)
+    assert [hull.name for hull in simulation.buoyancy.hulls] == ["hull", "environment/ball"]
+    list(simulation.frames())
+
+
+def test_the_water_of_an_environment_gives_way_to_the_scenes(tmp_path):
+    spec = mujoco.MjSpec.from_file(str(ENVIRONMENT / "buoys.xml"))
+    add_water(spec, Water(density=500.0))
+    with pytest.warns(BuoyancyWarning, match="the water 'sea' of the model gives way to the scene"):
+        simulation = scene_in(tmp_path, "own.xml", own=spec.to_xml())
+    assert [hull.name for hull in simulation.buoyancy.hulls] == ["hull", "environment/ball"]
+    list(simulation.frames())
+
+
 # words that find nothing --------------------------------------------------------------------------
 
 POSSIBLE = (
@@ -579,6 +614,16 @@ def test_a_word_of_a_sequence_is_whole_and_a_text_splits():
     assert volumes(said)["my hull"] == pytest.approx(HULL / 2)
     with pytest.raises(ModelError, match="no moving geom matches 'my'"):
         volumes(plain, selection=Selection(geoms="my hull"))
+
+
+def test_the_advised_choice_of_convex_hulls_is_one_flag_for_each_pattern():
+    model = with_custom("", '<geom name="bob\'s tail" size=".05" pos="0 0 -.2" mass=".1"/>')
+    geoms = [model.geom("box").id, model.geom("bob's tail").id]
+    assert describe_convex_choice(model, geoms, geoms) == (
+        "--hull 'box=convex' --hull 'bob?s?tail=convex', "
+        "in Python Selection(hull='box=convex bob?s?tail=convex'), "
+        'in MJCF <text name="buoyancy_hull" data="box=convex bob?s?tail=convex"/>'
+    )
 
 
 @given(st.lists(st.text(min_size=1).filter(str.strip), min_size=1))

@@ -11,7 +11,6 @@ from buoyancy_mj.cli.flags import (
     ModelArgument,
     SelectionFlags,
     WaterOption,
-    check_file_name,
     parse_still_water,
 )
 from buoyancy_mj.hulls.mjcf import write_mjcf
@@ -59,7 +58,6 @@ def ballast_(
 
     Instead of a draft, --reserve asks for a lift under water, and 0 for neutral buoyancy.
     """
-    check_file_name("--out", out_file)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     result = ballast(

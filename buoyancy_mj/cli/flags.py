@@ -5,7 +5,6 @@ import errno
 import inspect
 import json
 import typing
-import unicodedata
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Annotated, Any
@@ -105,27 +104,13 @@ class SelectionFlags:
 
 
 def check_recording_name(path: Path | None) -> None:
-    """Check that the name of a recording, if there is one, ends in .rrd and can be printed.
+    """Check that the name of a recording, if there is one, ends in .rrd.
 
     Raises:
-        SceneError: it does not, or cannot.
+        SceneError: it does not.
     """
-    check_file_name("--record", path)
     if path is not None and path.suffix != ".rrd":
         raise SceneError(f"--record is '{path}'; a recording's name ends in .rrd")
-
-
-def check_file_name(flag: str, path: Path | None) -> None:
-    """Check that the name of a file or folder to be written, if there is one, can be printed.
-
-    Raises:
-        SceneError: it has line breaks, other control characters, or bytes that are no text.
-    """
-    if any(unicodedata.category(letter) in ("Cc", "Cs") for letter in str(path)):
-        raise SceneError(
-            f"{flag} is {str(path)!a}; a file's name is one line of text, without control "
-            "characters"
-        )
 
 
 def parse_still_water(settings: list[str] | None) -> Water:

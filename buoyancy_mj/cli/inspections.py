@@ -14,7 +14,6 @@ from buoyancy_mj.cli.flags import (
     ModelArgument,
     SelectionFlags,
     WaterOption,
-    check_file_name,
     check_recording_name,
     parse_still_water,
 )
@@ -59,8 +58,6 @@ def inspect_(
     The report also tells what is wrong with meshes. Exit status 1 says that a mesh is refused.
     """
     check_recording_name(record)
-    check_file_name("--plot", plot)
-    check_file_name("--repair", repair)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     compiled = compile_spec(spec, path)

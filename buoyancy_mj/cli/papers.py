@@ -8,7 +8,6 @@ from rich.table import Table
 
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.flags import check_file_name
 
 
 @command()
@@ -24,7 +23,6 @@ def paper(
     ] = False,
 ) -> None:
     """Reproduce the source paper, and judge its claims."""
-    check_file_name("--out", out)
     from buoyancy_mj.paper import contents, reproduction  # need matplotlib, which 'run' does not
 
     total = len(set(only)) if only else len(contents.STUDIES)

@@ -21,6 +21,7 @@ from buoyancy_mj.cli.flags import (
     SelectionFlags,
     check_recording_name,
 )
+from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.errors import RecordingError, SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Frame
@@ -140,6 +141,7 @@ def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
     columns = TextColumn("{task.completed:.1f} of {task.total:.1f} s"), TimeRemainingColumn()
     with show_progress(scene.title, scene.duration, *columns) as update:
         for frame in simulation.frames():
+            raise_received()
             add(frame)
             update(completed=frame.time)
 

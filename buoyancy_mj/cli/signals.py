@@ -12,6 +12,9 @@ STOPPING = tuple(
 )
 """Signals that end a command."""
 
+_received: list[int] = []
+"""Numbers of the signals that came since the command began."""
+
 
 class Stop(KeyboardInterrupt):
     """A signal that ends a command, as Ctrl-C does."""
@@ -28,29 +31,36 @@ class Stop(KeyboardInterrupt):
 def raise_signals() -> Iterator[None]:
     """Signals that end a command raise `Stop` in the block, but for those that are ignored.
 
-    One that came where Python cannot raise, as in `__del__`, is raised when the block has ended.
+    Some code lets nothing through, as `__del__` and modules that catch everything. So the block
+    calls `raise_received` now and then, and ends with it.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    received: list[int] = []
-
-    def stop(number: int, _: Any) -> NoReturn:
-        received.append(number)
-        raise Stop(number)
-
+    _received.clear()
     before = {number: signal.getsignal(number) for number in STOPPING}
     for number, handler in before.items():
         # what runs in the background, or under nohup, is to live on
         if handler is not signal.SIG_IGN:
-            signal.signal(number, stop)
+            signal.signal(number, _stop)
     try:
         yield
+        raise_received()
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
-    if received:
-        raise Stop(received[0])
+
+
+def raise_received() -> None:
+    """Raise the signal that came and did not get through, if there is one."""
+    if _received:
+        raise Stop(_received[0])
+
+
+def _stop(number: int, _: Any) -> NoReturn:
+    """Take a signal."""
+    _received.append(number)
+    raise Stop(number)
 
 
 def raise_later(stop: Stop) -> None:

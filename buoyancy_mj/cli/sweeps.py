@@ -8,7 +8,8 @@ from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags, check_file_name
+from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags
+from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.errors import SweepError
 from buoyancy_mj.scenes import catalog, ranges
 from buoyancy_mj.scenes.scene import read_scene
@@ -50,7 +51,6 @@ def sweep(
     The runs go side by side on all cores. A sweep that was interrupted goes on where it was.
     """
     # what varies, and what all runs share
-    check_file_name("--out", out)
     fields = [ranges.parse_range(text) for text in over]
     path = catalog.scene_path(scene)
     settings = (*flags.overrides(), *selection.overrides())
@@ -67,6 +67,7 @@ def sweep(
                 done += 1
                 failures += [row["reason"]] if row["status"] != "done" else []
                 update(advance=1)
+                raise_received()
         except KeyboardInterrupt:
             console.print_line(
                 console.err,

@@ -8,7 +8,6 @@ from rich.table import Table
 
 from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.flags import check_file_name
 
 
 @command()
@@ -27,7 +26,6 @@ def validate(
 
     These are experiments, benchmarks and closed forms.
     """
-    check_file_name("--out", out)
     from buoyancy_mj.validation import report  # needs matplotlib, which 'run' does not
 
     with console.show_count(len(set(only)) if only else len(report.CASES)) as begin:

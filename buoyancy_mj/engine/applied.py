@@ -62,8 +62,10 @@ class AppliedRows:
         Raises:
             EngineError: see `find_others`.
         """
-        data.xfrc_applied[self._bodies] = self.find_others(data)
-        data.xfrc_applied[0] = 0.0
+        others = self.find_others(data)
+        if _read_seal(data.xfrc_applied[0]) is not None:
+            data.xfrc_applied[self._bodies] = others
+            data.xfrc_applied[0] = 0.0
 
     def take_out_everywhere(self) -> None:
         """Take the water out of all data that it was put into."""

@@ -161,11 +161,11 @@ class Buoyancy(ReadOnly):
 
         Through `xfrc_applied` the water is an `mjcb_control` in Python that writes its wrench on
         each body there, about its `xipos`: force and torque sensors and `cfrc_ext` read it, and the
-        motion is the same. In each pass the water assigns the rows of its bodies to its own wrench
+        motion is the same. In each pass the water assigns the rows of its bodies, to its own wrench
         plus what others want there. Others want what was there before, until they assign a row
-        again, clear it, reset the data or restore a state. So assign a row, between steps; what is
-        added by `+=` would count the water in the row twice, but for
-        `external(data)[body] += wrench`. At the end the rows hold what others want.
+        anew, clear it, reset the data or restore a state. So assign a row, between steps. A `+=`
+        would count the water in the row twice; `external(data)[body] += wrench` does not. At the
+        end the rows hold what others want.
 
         Args:
             native: whether to install a compiled C function. It needs no Python and takes no lock,
@@ -176,8 +176,8 @@ class Buoyancy(ReadOnly):
                 `mujoco.batch` makes of its model; compiled only.
 
         Raises:
-            ModelError: the model disables actuation, or brings its own water; or `xfrc_applied`
-                has another water, or added mass that a force or torque sensor would not read.
+            ModelError: the model disables actuation, or brings its own water; or, through
+                `xfrc_applied`, another water acts there, or a sensor would misread added mass.
             EngineError: `native`, `through` or `copies` is asked for and cannot be; the message
                 says why.
         """
@@ -233,7 +233,8 @@ class Buoyancy(ReadOnly):
 
         Raises:
             ModelError: the data are of another model.
-            EngineError: none acted on these data so far, or 64 others were stepped since.
+            EngineError: none acted on these data so far, 64 others were stepped since, or the data
+                hold other poses now.
         """
         with self._acting.lock:
             record = self._acting.last_record(data)
@@ -241,6 +242,11 @@ class Buoyancy(ReadOnly):
                 raise EngineError(
                     f"this water has not acted on these data at their time, {data.time:g} s; "
                     "step them while it acts, call mj_forward, or use evaluate"
+                )
+            if not np.array_equal(record.xipos, data.xipos, equal_nan=True):
+                raise EngineError(
+                    "the bodies of these data are elsewhere than in the last pass of this water; "
+                    "call mj_forward while it acts, or use evaluate"
                 )
             return self._read(record, data)
 

@@ -1,9 +1,9 @@
 """Python functions as C functions, and the errors that they raise there."""
 
 import collections
-import contextlib
 import ctypes
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
+from contextlib import AbstractContextManager
 from typing import Any, NamedTuple
 
 import mujoco
@@ -64,13 +64,24 @@ def find_cause(told: Exception | str) -> BaseException | None:
     return next(causes, None)
 
 
-@contextlib.contextmanager
-def raise_causes() -> Iterator[None]:
+class _RaiseCauses:
+    """What `raise_causes` gives; a generator would cost more than all else around a step."""
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, _: Any, error: BaseException | None, __: Any) -> None:
+        cause = find_cause(error) if isinstance(error, mujoco.FatalError) else None
+        if cause is not None:
+            raise cause from None
+
+
+_RAISE_CAUSES = _RaiseCauses()
+
+
+def raise_causes() -> AbstractContextManager[None]:
     """Raise what Python functions raised, Ctrl-C among it, in place of the engine's errors."""
-    try:
-        yield
-    except mujoco.FatalError as error:
-        raise find_cause(error) or error from None
+    return _RAISE_CAUSES
 
 
 def encode_text(text: str) -> Any:

@@ -209,19 +209,21 @@ def _leave(link: _Installed) -> None:
     _lent.remove(link)
     now = _get(link.slot)
     follower = next((other for other in _lent if other.previous is link.function), None)
-    if now is link.function:
-        _set(link.slot, link.previous)
-    elif follower is not None:
-        follower.follow(link.previous)
-    else:
-        warnings.warn(
-            f"mjcb_{link.slot} was set to {_describe(now)} while the water was installed there, "
-            "which keeps the water from acting; it stays as it was set: set a callback before "
-            "`installed`, and the water calls it first",
-            BuoyancyWarning,
-            stacklevel=6,
-        )
-    link.leave()
+    try:
+        if now is link.function:
+            _set(link.slot, link.previous)
+        elif follower is not None:
+            follower.follow(link.previous)
+        else:
+            warnings.warn(
+                f"mjcb_{link.slot} was set to {_describe(now)} while the water was installed "
+                "there, which keeps the water from acting; it stays as it was set: set a callback "
+                "before `installed`, and the water calls it first",
+                BuoyancyWarning,
+                stacklevel=6,
+            )
+    finally:
+        link.leave()
 
 
 def _try_compiled(

@@ -54,24 +54,26 @@ def check_sleep(model: mujoco.MjModel) -> None:
 def check_applied(model: mujoco.MjModel, causes: Sequence[str]) -> None:
     """Refuse water in `xfrc_applied` that a sensor of the model would misread.
 
-    The part of added mass that goes with accelerations stands in the mass matrix, and MuJoCo's
-    recursion for forces between bodies knows only their own inertia.
+    The part of added mass that goes with accelerations stands in the mass matrix. MuJoCo's
+    recursion for forces between bodies knows only their own inertia, and its sensor of kinetic
+    energy reads the matrix before a control callback is called.
 
     Args:
         model: the model.
         causes: names of the loads that act.
 
     Raises:
-        ModelError: added mass acts, and a sensor measures the force or torque between bodies.
+        ModelError: added mass acts, and a sensor measures the force or torque between bodies, or
+            kinetic energy.
     """
-    kinds = mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE
+    sensor = mujoco.mjtSensor
+    kinds = sensor.mjSENS_FORCE, sensor.mjSENS_TORQUE, sensor.mjSENS_E_KINETIC
     sensors = np.flatnonzero(np.isin(model.sensor_type, [int(kind) for kind in kinds]))
     if "added_mass" in causes and len(sensors):
         name = model.sensor(sensors[0]).name or f"number {sensors[0]}"
         raise ModelError(
-            f"the sensor '{name}' would not read the part of the added mass that goes with "
-            "accelerations, which stands in the mass matrix and not in xfrc_applied: leave out "
-            "the sensor, or the added mass (added_mass='none')"
+            f"the sensor '{name}' would not read the added mass, which stands in the mass matrix "
+            "and not in xfrc_applied: leave out the sensor, or the added mass (added_mass='none')"
         )
 
 

@@ -27,6 +27,7 @@ class LeasedFunction:
         self._closure = Closure(passive.callback, self._lease.address)
         self.function = _ENGINE_FUNCTION(self._closure.address)
         """As MuJoCo takes it for a callback."""
+        self._previous: Any = None
         # alive even when the interpreter has gone, since other threads may run on
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))
 
@@ -43,6 +44,7 @@ class LeasedFunction:
     def follow(self, previous: Any) -> None:
         """Let it call another C function first; None for none."""
         self._lease.set_number("previous", 0 if previous is None else address_of(previous))
+        self._previous = previous
 
     def give_back(self) -> None:
         """Let it act no more."""

@@ -98,6 +98,7 @@ class LoadModel:
             total=np.zeros((bodies, 6)),
             inertia=np.zeros(inertias if "added_mass" in self.causes else 0),
             instant=np.zeros(1),
+            xipos=np.zeros((bodies, 3)),
             ids=np.zeros(IDS, np.int64),
         )
 

@@ -77,7 +77,7 @@ def evaluate(
     passes.begin(load_model.arrays, record)
     for load in load_model.acting:
         load(arrays)
-    passes.end(engine.time, record)
+    passes.end(engine, record)
 
 
 def apply(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, last: Pass) -> None:
@@ -101,12 +101,15 @@ def augment(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, l
 def _augment(
     load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, record: Record
 ) -> None:
-    """Add the added mass to the mass matrix, and let MuJoCo factor what was changed."""
+    """Add the added mass to the mass matrix, and let MuJoCo take up what was changed."""
     if "added_mass" not in load_model.causes:
         return
     done = passes.augment(load_model.arrays, _read_engine(model, data), record)
     if done != passes.UNCHANGED:
         mujoco.mj_factorM(model, data)
+        # a control callback comes after the kinetic energy
+        if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_ENERGY:
+            mujoco.mj_energyVel(model, data)
     if done == passes.AUGMENT_DUAL:
         mujoco.mj_projectConstraint(model, data)
 

@@ -22,10 +22,11 @@ def describe_convex_choice(
         convex: indices of all geoms that are to displace as their convex hull.
         geoms: indices of the geoms that displace water.
     """
-    words = " ".join(f"{pattern}=convex" for pattern in write_patterns(model, convex, geoms))
-    flag = shlex.quote(words) if shlex.quote(words) != words else f"'{words}'"
+    patterns = [f"{pattern}=convex" for pattern in write_patterns(model, convex, geoms)]
+    words = " ".join(patterns)
+    flags = " ".join(f"--hull {_quote(pattern)}" for pattern in patterns)
     return (
-        f"--hull {flag}, in Python Selection(hull={words!r}), "
+        f"{flags}, in Python Selection(hull={words!r}), "
         f'in MJCF <text name="{CUSTOM_TEXTS["hull"]}" data={quoteattr(words)}/>'
     )
 
@@ -49,6 +50,11 @@ def write_patterns(
     return patterns
 
 
+def _quote(text: str) -> str:
+    """A text for the shell, always between quotes."""
+    return shlex.quote(text) if shlex.quote(text) != text else f"'{text}'"
+
+
 def _escape(name: str) -> str:
-    """A name as a pattern that matches it: '?' for what separates words or is a wildcard."""
-    return re.sub(r"[\s,*?\[]", "?", name)
+    """A name as a pattern that matches it: '?' for what parts or quotes words, or is a wildcard."""
+    return re.sub(r"[\s,*?\['\"]", "?", name)

@@ -6,7 +6,7 @@ import shlex
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import ModelError, describe
 
 CUSTOM_TEXTS: Mapping[str, str] = {
     "geoms": "buoyancy_geoms",
@@ -89,7 +89,7 @@ def split_words(text: str, what: str) -> tuple[str, ...]:
         return tuple(lexer)
     except ValueError:
         raise ModelError(
-            f"{what} is {text!r}, whose quote is not closed; close it, "
+            f"{what} is {describe(text)}, whose quote is not closed; close it, "
             "or put a name with a quote in it between quotes of the other kind"
         ) from None
 
@@ -124,7 +124,7 @@ def _parse_field(value: Any, name: str) -> tuple[str, ...]:
         words = (value,)
     if not all(isinstance(word, str) for word in words):
         raise ModelError(
-            f"{name} is {value!r}; it must be a pattern, as 'hull*', or a list of patterns"
+            f"{name} is {describe(value)}; it must be a pattern, as 'hull*', or a list of patterns"
         )
     if not all(word.strip() for word in words) or not words:
         raise ModelError(

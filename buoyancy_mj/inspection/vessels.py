@@ -124,9 +124,9 @@ def inspect_vessel(
     if floats and vessel.free and not refused:
         try:
             rest = find_equilibrium(vessel)
-            rests = find_equilibria(vessel)
             with warnings.catch_warnings(record=True) as caught:
                 warnings.simplefilter("always", BuoyancyWarning)
+                rests = find_equilibria(vessel)
                 righting = compute_righting_arm(
                     vessel,
                     np.radians(np.arange(181.0)),

@@ -121,17 +121,25 @@ PATHS = tuple(
 )
 """Where all of these are in MuJoCo's structs, as "mjData.xpos", and the extents of their arrays, as
 "mjModel.nbody"."""
+GOLDEN = np.int64(-7046029254386353131)
+"""2^64 over the golden ratio, as a signed word."""
 NO_GRAVITY, PGS = 1 << 7, 0
 """MuJoCo's mjDSBL_GRAVITY and mjSOL_PGS."""
 
 
 @njit(cache=True, error_model="numpy")
 def sum_sizes(geom_size):
-    """A sum over the bits of the sizes of all geoms (ngeom, 3), which another size changes."""
-    total = np.int64(0)
+    """A sum over the bits of the sizes of all geoms (ngeom, 3), which other sizes change.
+
+    The weights are multiples of the golden ratio. A power of two changes the highest bits alone, so
+    that they are folded onto lower ones.
+    """
+    total = weight = np.int64(0)
     for geom in range(geom_size.shape[0]):
         for k in range(3):
-            total = 31 * total + geom_size[geom, k]
+            bits = geom_size[geom, k]
+            weight += GOLDEN
+            total += (bits ^ (bits >> 29)) * weight
     return total
 
 

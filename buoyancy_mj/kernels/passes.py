@@ -74,6 +74,8 @@ class Record(NamedTuple):
     """The mass matrix with the added mass in it, as the last pass left it."""
     instant: Annotated[Doubles, (1,)]
     """Time of the pass [s]."""
+    xipos: Annotated[Doubles, ("nbody", 3)]
+    """Centres of mass of the bodies in the pass [m]."""
     ids: Annotated[Words, (IDS,)]
     """Of what the pass was, in columns `ALIVE` to `AUGMENTED`."""
 
@@ -99,15 +101,16 @@ def begin(loads, record):
 
 
 @njit(cache=True, error_model="numpy")
-def end(time, record):
-    """Sum up the causes at a time [s]."""
+def end(engine, record):
+    """Sum up the causes, and note of what instant they are."""
     total = record.total
     total[:, :] = 0.0
     for cause in record.causes:
         for b in range(cause.shape[0]):
             for i in range(6):
                 total[b, i] += cause[b, i]
-    record.instant[0] = time
+    record.instant[0] = engine.time
+    record.xipos[:, :] = engine.bodies.xipos
 
 
 @register_jitable

@@ -21,7 +21,7 @@ from buoyancy_mj.scenes.scene import INTEGRATORS, Scene
 from buoyancy_mj.scenes.scene_vehicle import ENVIRONMENT, EQUILIBRIUM, SceneVehicle
 from buoyancy_mj.scenes.specs import attach_spec, compile_spec, read_spec
 from buoyancy_mj.scenes.start import place_vehicle, settle_vehicle
-from buoyancy_mj.scenes.vehicles import read_vehicle
+from buoyancy_mj.scenes.vehicles import read_vehicle, remove_water
 from buoyancy_mj.settings.config import has_texts
 
 
@@ -42,8 +42,8 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     The only vehicle's file is the base: its options, names, keyframes and custom elements stay. Of
     several vehicles each is attached to the world under the prefix 'NAME/', and the options of the
     first hold. The body of a vehicle gets a free joint if it has none, and the environment is
-    attached under the prefix 'environment/'. The scene's water replaces the water that a vehicle's
-    file brings.
+    attached under the prefix 'environment/'. The scene's water replaces the water that a file
+    brings.
 
     Args:
         scene: what to assemble.
@@ -98,7 +98,9 @@ def _join_files(scene: Scene) -> tuple[mujoco.MjSpec, tuple[Part, ...]]:
         parts = [_attach_entry(spec, scene, entry) for entry in scene.entries]
     if scene.environment is not None:
         path = catalog.environment_path(scene.environment, scene.folder)
-        attach_spec(spec, _path_of(scene), read_spec(path), path, f"{ENVIRONMENT}/")
+        environment = read_spec(path)
+        remove_water(environment)
+        attach_spec(spec, _path_of(scene), environment, path, f"{ENVIRONMENT}/")
     return spec, tuple(parts)
 
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from buoyancy_mj.errors import SweepError
+from buoyancy_mj.errors import SweepError, describe
 from buoyancy_mj.files import lock, replace_file
 
 _TEXT_COLUMNS = ("scene", "status", "reason", "method")
@@ -50,9 +50,6 @@ class Journal:
         """The columns."""
         self.rows: dict[int, dict[str, str]] = {}
         """Rows by the number of the run."""
-        self._path = path
-        if path.exists() and not path.is_file():
-            raise SweepError(f"cannot keep results in '{path}': it is no file; give another --out")
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             # a name that nobody gave may be a link to anything
@@ -132,7 +129,13 @@ class Journal:
                     f"'{path}' holds runs of another scene, or with other flags; give another "
                     "--out, or remove it"
                 )
-            self.rows[int(row["run"])] = _as_texts(row)
+            try:
+                self.rows[int(row["run"])] = _as_texts(row)
+            except (TypeError, ValueError):
+                raise SweepError(
+                    f"'{path}' holds a run {describe(row['run'])}, which is no number; "
+                    "give another --out, or remove it"
+                ) from None
 
     def _refuse(self, path: Path) -> None:
         raise SweepError(

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from buoyancy_mj.errors import SceneError, choices, describe
+from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.settings.tables import build
 from buoyancy_mj.settings.toml import table_of
@@ -104,7 +104,7 @@ def name_vehicles(vehicles: Sequence[SceneVehicle]) -> tuple[SceneVehicle, ...]:
     for vehicle in vehicles:
         if not isinstance(vehicle, SceneVehicle):
             raise SceneError(
-                f"vehicles holds {vehicle!r}; each must be a SceneVehicle, as "
+                f"vehicles holds {describe(vehicle)}; each must be a SceneVehicle, as "
                 "SceneVehicle(model='sauvc_auv')"
             )
 
@@ -133,8 +133,8 @@ def name_vehicles(vehicles: Sequence[SceneVehicle]) -> tuple[SceneVehicle, ...]:
 def vehicles_from_tables(tables: Any, where: str) -> tuple[SceneVehicle, ...]:
     """The vehicles of a list of tables; `where` is what errors call the scene."""
     if not isinstance(tables, list):
-        raise SceneError(
-            f"{where}: vehicles is {tables!r}; needed is a list of tables [[vehicles]]"
+        raise SceneTypeError(
+            f"{where}: vehicles is {describe(tables)}; needed is a list of tables [[vehicles]]"
         )
     vehicles = []
     for i, table in enumerate(tables):
@@ -145,7 +145,9 @@ def vehicles_from_tables(tables: Any, where: str) -> tuple[SceneVehicle, ...]:
         # the error for an unknown key lists those of inner tables too
         for key in plain:
             if key not in VEHICLE_KEYS:
-                raise SceneError(f"{place}: unknown key '{key}'; {choices(key, VEHICLE_KEYS)}")
+                raise SceneTypeError(
+                    f"{place}: unknown key {describe(key)}; {choices(key, VEHICLE_KEYS)}"
+                )
         vehicles.append(build(SceneVehicle, plain, place, **fields))
     return tuple(vehicles)
 

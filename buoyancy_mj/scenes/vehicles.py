@@ -29,7 +29,7 @@ def read_vehicle(path: Path) -> mujoco.MjSpec:
     if is_urdf(path):
         add_missing_inertia(spec)
     _turn_gravity_on(spec)
-    _remove_water(spec)
+    remove_water(spec)
 
     # the compiler fuses bodies in the spec itself, which then has those of the model
     if spec.compiler.fusestatic:
@@ -80,8 +80,8 @@ def _turn_gravity_on(spec: mujoco.MjSpec) -> None:
     )
 
 
-def _remove_water(spec: mujoco.MjSpec) -> None:
-    """Remove the water that the vehicle's file brings: the scene's takes its place."""
+def remove_water(spec: mujoco.MjSpec) -> None:
+    """Remove the water that a file brings: the scene's takes its place."""
     instances = [plugin for plugin in spec.plugins if plugin.plugin_name == PLUGIN]
     names = [plugin.name for plugin in instances]
     for body in spec.bodies:

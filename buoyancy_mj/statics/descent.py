@@ -15,10 +15,16 @@ _BALANCED = 1e-11
 """Torque over weight times radius at which a vessel is at rest."""
 _SOFT = 1e-6
 """Stiffness over weight times radius below which a lower pose may lie beside a balance."""
-_LOWER = 1e-11
-"""Fall of energy, over weight times radius, that tells a lower pose from rounding."""
+_LEVEL = 1e-5
+"""Stiffness over weight times radius of a valley that is all but level."""
+_FAINT = 1e-7
+"""Torque over weight times radius along such a valley."""
 _NOISE = 1e-13
 """Rounding of the energy, over weight times radius."""
+_LOWER = 1e-11
+"""Fall of energy, over weight times radius, that tells a lower pose from rounding."""
+_PATIENCE = 50
+"""Steps after which a valley that bends, and is all but level, counts as level."""
 _LOOK_AROUND = 1e-3, 1e-2, 1e-1
 """How far to look for a lower pose beside a balance [rad]."""
 _MOST_STEPS = 200
@@ -63,14 +69,17 @@ def find_balance(
     scale = vessel.weight * vessel.radius
     reach = _LONGEST_STEP
     for count in range(_MOST_STEPS):
-        torque = basis.T @ pose.torque
+        late = count > _PATIENCE
         values, vectors = np.linalg.eigh(basis.T @ tilt_stiffness(pose) @ basis)
         principal = basis @ vectors
+        torque = principal.T @ pose.torque
+        if stable:
+            torque = np.where(_is_level(values, torque, scale, late), 0.0, torque)
 
         # in balance, or as good as on a summit: look for a lower pose nearby
         balanced = bool(np.linalg.norm(torque) <= _BALANCED * scale) or reach < _SHORTEST_STEP
-        if stable and (balanced or _is_poised(values, vectors.T @ torque, scale)):
-            lower = _find_lower(pose, values, principal)
+        if stable and (balanced or _is_poised(values, torque, scale)):
+            lower = _find_lower(pose, values, principal, scale * (-_SOFT if late else _SOFT))
             if lower is not None:
                 pose, reach = lower, _LONGEST_STEP
                 continue
@@ -80,7 +89,7 @@ def find_balance(
             return pose, count
 
         # a step within the trust region, which grows with success
-        step = _newton_step(values, vectors.T @ torque, scale, reach, downhill=stable)
+        step = _newton_step(values, torque, 1e-9 * scale, reach, downhill=stable)
         trial = tilt(pose, principal @ step)
         if _improves(trial, pose, basis, stable=stable):
             reach = min(2.0 * reach, _LONGEST_STEP)
@@ -95,6 +104,24 @@ def find_balance(
         f"{float(np.linalg.norm(basis.T @ pose.torque)):.3g} N m are left; start elsewhere"
         + ("" if stable else ", or look for a stable one")
     )
+
+
+def _is_level(
+    values: NDArray[np.float64], torque: NDArray[np.float64], scale: float, faint: bool
+) -> NDArray[np.bool_]:
+    """Which principal axes (k,) a turn about gains nothing, and would spoil the balance of others.
+
+    Args:
+        values: principal stiffnesses (k,) [N m].
+        torque: torques about the principal axes (k,) [N m].
+        scale: weight times radius [N m].
+        faint: whether faint torques do not count, or only those that gain less than rounding.
+    """
+    soft = values < _LEVEL * scale
+    if faint:
+        return soft & (np.abs(torque) < _FAINT * scale)
+    gains = 0.5 * torque**2 / np.maximum(np.abs(values), 1e-9 * scale)
+    return soft & (gains < 0.1 * _NOISE * scale)
 
 
 def _is_poised(values: NDArray[np.float64], torque: NDArray[np.float64], scale: float) -> bool:
@@ -112,7 +139,10 @@ def _is_poised(values: NDArray[np.float64], torque: NDArray[np.float64], scale: 
 
 
 def _find_lower(
-    pose: FloatingPose, values: NDArray[np.float64], principal: NDArray[np.float64]
+    pose: FloatingPose,
+    values: NDArray[np.float64],
+    principal: NDArray[np.float64],
+    least: float,
 ) -> FloatingPose | None:
     """Find a lower pose beside a summit or a saddle, or where the curvature tells nothing.
 
@@ -120,12 +150,13 @@ def _find_lower(
         pose: a pose in balance, or nearly so.
         values: its principal stiffnesses (k,) [N m], ascending.
         principal: their axes (2, k).
+        least: stiffness from which on nothing lower lies beside [N m].
 
     Returns:
         The pose; None at the bottom of a valley.
     """
     scale = pose.vessel.weight * pose.vessel.radius
-    soft = principal[:, values < _SOFT * scale]
+    soft = principal[:, values < least]
     if not soft.size:
         return None
 
@@ -163,7 +194,7 @@ def _choose_axis(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[np.fl
 def _newton_step(
     values: NDArray[np.float64],
     torque: NDArray[np.float64],
-    scale: float,
+    least: float,
     reach: float,
     *,
     downhill: bool,
@@ -173,18 +204,12 @@ def _newton_step(
     Args:
         values: principal stiffnesses (k,) [N m].
         torque: torques about the principal axes (k,) [N m].
-        scale: weight times radius [N m].
+        least: smallest magnitude of a stiffness to divide by [N m].
         reach: length of the longest step [rad].
         downhill: whether to turn with the torque also where the stiffness is negative.
     """
-    least = 1e-9 * scale
     divisor = np.where(np.abs(values) > least, values, np.copysign(least, values))
     step = torque / (np.abs(divisor) if downhill else divisor)
-
-    # a turn that nothing resists would gain less than rounding, and spoil the other
-    if downhill:
-        gain = 0.5 * np.abs(step * torque)
-        step[(values < _SOFT * scale) & (gain < 0.1 * _NOISE * scale)] = 0.0
     length = float(np.linalg.norm(step))
     return step * (reach / length) if length > reach else step
 

@@ -15,6 +15,8 @@ FREE = 5e-4
 A cylinder with 24 sides resists with 2e-4, a ball of 5120 facets with 5e-5."""
 _NEARBY = 0.5 * math.pi
 """Angle between two poses up to which a way from one to the other is sought [rad]."""
+_MOST_TRIES = 6
+"""Ways from a pose that end at a rise, after which it counts as by itself."""
 _STRIDE = 0.04
 """Stride on that way [rad]."""
 
@@ -35,6 +37,7 @@ def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
     ups = np.array([pose.rotation[2] for pose in poses])
     groups = np.arange(len(poses))
     lowest = np.array([pose.energy for pose in poses])
+    tries = np.zeros(len(poses), int)
 
     # the nearest first, whose way is the shortest
     ones, others = np.triu_indices(len(poses), 1)
@@ -43,10 +46,14 @@ def group_poses(poses: Sequence[FloatingPose]) -> NDArray[np.int64]:
         if cosines[k] < math.cos(_NEARBY):
             break
         i, j = ones[k], others[k]
+        if groups[i] == groups[j] or max(tries[i], tries[j]) >= _MOST_TRIES:
+            continue
         floor = max(lowest[groups[i]], lowest[groups[j]])
-        if groups[i] != groups[j] and _turns_freely(poses[i], poses[j], floor):
+        if _turns_freely(poses[i], poses[j], floor):
             lowest[groups[i]] = min(lowest[groups[i]], lowest[groups[j]])
             groups[groups == groups[j]] = groups[i]
+        else:
+            tries[[i, j]] += 1
     return groups
 
 
@@ -63,17 +70,16 @@ def _turns_freely(one: FloatingPose, two: FloatingPose, floor: float) -> bool:
     free = 0.5 * FREE * start.vessel.weight * start.vessel.radius
     pose = start
     for _ in range(math.ceil(2.0 * angle / _STRIDE) + 1):
+        if _angle_between(pose, goal) <= _STRIDE:
+            return True
         rise = free * _angle_between(start, pose) ** 2
         if pose.energy > min(start.energy + rise, floor + free * angle**2):
             return False
-        if _angle_between(pose, goal) <= _STRIDE:
-            return True
 
         # on towards the goal, whose vertical leans that way, and down square to that
         lean = (pose.rotation @ goal.rotation[2])[:2]
         lean /= np.linalg.norm(lean)
-        pose = tilt(pose, _STRIDE * np.array([lean[1], -lean[0]]))
-        pose = _descend(pose, lean)
+        pose = _descend(tilt(pose, _STRIDE * np.array([lean[1], -lean[0]])), lean)
     return False
 
 

@@ -15,7 +15,7 @@ from buoyancy_mj.statics.building import build_vessel
 from buoyancy_mj.statics.descent import find_balance
 from buoyancy_mj.statics.distinct_poses import group_poses
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
-from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH
+from buoyancy_mj.statics.heading_axes import HEAVE_ROLL_PITCH, compute_mass_matrix
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
 from buoyancy_mj.statics.lows import find_lows
 from buoyancy_mj.statics.vessel import Vessel
@@ -25,6 +25,8 @@ INDIFFERENT = 1e-3
 
 The period of such a motion is thirty times the shortest."""
 
+_SWING = 1e-3
+"""Turn [rad], and heave over radius, of a swing that shows what holds a vessel."""
 _LEVEL = 1e-6
 """Difference of energy over weight times radius of poses that are level with each other."""
 
@@ -40,7 +42,8 @@ class Equilibrium:
     eigenvalues: NDArray[np.float64]
     """Squared frequencies of coupled heave, roll and pitch (3,) [1/s^2], ascending.
 
-    The vessel tips over where one is negative."""
+    The vessel tips over where one is negative. Of a vessel that outriggers hold which only just
+    touch the water, they are those of a swing of 0.001 rad."""
     energy: float
     """Potential energy of weight and buoyancy [J]; of several poses the lowest is the safest."""
     iterations: int
@@ -74,7 +77,9 @@ def equilibrium(
 ) -> Equilibrium:
     """Find the pose in which a vessel comes to rest, its joints held.
 
-    The search takes Newton steps that always lead down, see `statics.balance.find_balance`.
+    The search takes Newton steps that always lead down, see `statics.descent.find_balance`. On a
+    summit the vessel falls the way that its least asymmetry drives it; without any it heels to
+    starboard, or trims by the bow where only that leads down.
 
     Args:
         model: any MuJoCo model with a body that floats.
@@ -107,8 +112,10 @@ def equilibria(
 ) -> tuple[Equilibrium, ...]:
     """Find every pose in which a vessel stays at rest, its joints held; lowest energy first.
 
-    The search starts from 42 attitudes all round. Poses that differ by heading alone, or by rolling
-    without resistance, count once.
+    The search starts from the lows of the energy over 642 attitudes all round, 9 degrees apart, and
+    over others 1 degree apart where the torque may vanish. Poses that differ by heading alone, or
+    by a turn that resists with less than 0.0005 of weight times radius per radian, count once, as
+    the one nearest to the start.
 
     Args:
         model: any MuJoCo model with a body that floats.
@@ -129,7 +136,7 @@ def equilibria(
 def find_equilibrium(vessel: Vessel, *, stable: bool = True) -> Equilibrium:
     """Find the pose in which a vessel comes to rest from where it is, see `equilibrium`."""
     pose, iterations = find_balance(vessel, vessel.rotation, stable=stable)
-    return _describe(pose, iterations)
+    return _describe(pose, iterations, held=stable)
 
 
 def find_equilibria(vessel: Vessel) -> tuple[Equilibrium, ...]:
@@ -139,7 +146,7 @@ def find_equilibria(vessel: Vessel) -> tuple[Equilibrium, ...]:
     rests = []
     for group in np.unique(groups):
         members = [found[i] for i in np.flatnonzero(groups == group)]
-        rests.append(_describe(*_choose_nearest(vessel, members)))
+        rests.append(_describe(*_choose_nearest(vessel, members), held=True))
     return tuple(sorted(rests, key=lambda rest: rest.energy))
 
 
@@ -166,8 +173,14 @@ def move_to_rest(vessel: Vessel, rest: Equilibrium) -> Vessel:
     )
 
 
-def _describe(pose: FloatingPose, iterations: int) -> Equilibrium:
-    """Describe a pose in balance, brought to the place and heading of the vessel's root body."""
+def _describe(pose: FloatingPose, iterations: int, *, held: bool) -> Equilibrium:
+    """Describe a pose in balance, brought to the place and heading of the vessel's root body.
+
+    Args:
+        pose: the pose.
+        iterations: steps of the search.
+        held: whether no lower pose lies beside it.
+    """
     vessel = pose.vessel
 
     # turn it back to the heading of the vessel
@@ -184,16 +197,40 @@ def _describe(pose: FloatingPose, iterations: int) -> Equilibrium:
     return Equilibrium(
         qpos=vessel.qpos_at(position, rotation),
         hydrostatics=at,
-        eigenvalues=_compute_eigenvalues(at),
+        eigenvalues=_find_eigenvalues(rest, held=held),
         energy=rest.energy,
         iterations=iterations,
     )
 
 
-def _compute_eigenvalues(at: Hydrostatics) -> NDArray[np.float64]:
+def _find_eigenvalues(pose: FloatingPose, *, held: bool) -> NDArray[np.float64]:
+    """Find the eigenvalues (3,) [1/s^2] of heave, roll and pitch, ascending."""
+    eigenvalues = _compute_eigenvalues(pose, pose.stiffness)
+
+    # a waterplane that changes at once: what holds the vessel shows in a swing
+    if held and eigenvalues[0] < -INDIFFERENT * np.abs(eigenvalues).max():
+        return _compute_eigenvalues(pose, _measure_stiffness(pose))
+    return eigenvalues
+
+
+def _compute_eigenvalues(pose: FloatingPose, stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
     """Eigenvalues (3,) [1/s^2] of stiffness over mass in heave, roll and pitch, ascending."""
-    stiffness = at.stiffness[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
-    mass_matrix = at.mass_matrix[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
+    mass_matrix = compute_mass_matrix(pose, np.eye(3))[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH]
     inverse = np.linalg.inv(np.linalg.cholesky(mass_matrix))
     symmetric = 0.5 * (stiffness + stiffness.T)
     return np.asarray(np.linalg.eigvalsh(inverse @ symmetric @ inverse.T), float)
+
+
+def _measure_stiffness(pose: FloatingPose) -> NDArray[np.float64]:
+    """Restoring force and torques (3, 3) per heave and turn, as in `FloatingPose.stiffness`.
+
+    They are those of a swing of finite size, from side to side.
+    """
+    vessel, size = pose.vessel, np.diag([_SWING * pose.vessel.radius, _SWING, _SWING])
+
+    def press(swing: NDArray[np.float64]) -> NDArray[np.float64]:
+        rotation = Rotation.from_rotvec([*swing[1:], 0.0]).as_matrix() @ pose.rotation
+        return pose_vessel(vessel, np.add(pose.position, [0.0, 0.0, swing[0]]), rotation).force
+
+    columns = [(press(-swing) - press(swing)) / (2.0 * swing.sum()) for swing in size]
+    return np.column_stack(columns)

@@ -1,5 +1,6 @@
 """`find_lows`: attitudes from which every rest pose of a vessel lies downhill."""
 
+import warnings
 from collections.abc import Sequence
 
 import numpy as np
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.statics.balance import find_heave_balance
 from buoyancy_mj.statics.distinct_poses import FREE
 from buoyancy_mj.statics.floating_pose import FloatingPose
@@ -18,7 +20,10 @@ _EVERYWHERE = 3
 _NEAR_BALANCE = 6
 """How often it is where the torque may vanish: 1 degree apart."""
 _DRAFT_TOLERANCE = 1e-4
-"""Part of the volume by which a draft may be off; the energy is off by the square of that."""
+"""Part of the displaced volume by which a draft may be off; the energy is off by its square."""
+MOST_LOWS = 200
+"""Most lows that are followed. A cylinder has some 130 round its side, a ball that barely dips in
+one for each facet."""
 
 
 def find_lows(vessel: Vessel) -> list[FloatingPose]:
@@ -27,6 +32,8 @@ def find_lows(vessel: Vessel) -> list[FloatingPose]:
     At the draft that carries its weight the energy depends on the direction of the vertical, seen
     from the vessel, alone. So a grid over the sphere of directions sees all attitudes. Of lows on
     one plain, as all over a ball, the lowest counts.
+
+    Of more than `MOST_LOWS` the lowest count, with a `BuoyancyWarning`.
 
     Raises:
         EquilibriumError: the vessel sinks.
@@ -49,7 +56,15 @@ def find_lows(vessel: Vessel) -> list[FloatingPose]:
     _, plains = connected_components(level, directed=False)
     lows = lows[np.argsort(energies[lows], kind="stable")]
     _, first = np.unique(plains[lows], return_index=True)
-    return [poses[low] for low in lows[np.sort(first)]]
+    lows = lows[np.sort(first)]
+    if len(lows) > MOST_LOWS:
+        warnings.warn(
+            f"'{vessel.name}' may rest in {len(lows)} poses, as a body of facets that barely dips "
+            f"in; only the lowest {MOST_LOWS} were looked at",
+            BuoyancyWarning,
+            stacklevel=3,
+        )
+    return [poses[low] for low in lows[:MOST_LOWS]]
 
 
 def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.int64]]:
@@ -57,6 +72,8 @@ def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.in
     ball = trimesh.creation.icosahedron()
     ups, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
     heights = np.full(len(ups), vessel.position[2])
+    displaced = vessel.mass / vessel.water.density / vessel.volume
+    tolerance = max(_DRAFT_TOLERANCE * displaced, 1e-14)
     poses: list[FloatingPose] = []
     for level in range(_NEAR_BALANCE + 1):
         # each draft begins at that between its neighbours
@@ -69,7 +86,7 @@ def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.in
 
         new = slice(len(poses), None)
         for rotation, height in zip(_turn_upright(ups[new]), heights[new], strict=True):
-            poses.append(find_heave_balance(vessel, rotation, height, _DRAFT_TOLERANCE))
+            poses.append(find_heave_balance(vessel, rotation, height, tolerance))
         heights = np.array([pose.position[2] for pose in poses])
     edges = np.sort(trimesh.geometry.faces_to_edges(faces), axis=1)
     return poses, np.unique(edges, axis=0)

@@ -32,6 +32,8 @@ MOST_TURNS = swell.PANEL * swell.PANELS
 """Greatest change of a wave's phase from the middle of a hull to its corner [rad].
 
 Shorter waves are not resolved, see `kernels.swell.PANELS`."""
+MOST_PANELS = 100_000
+"""Most short waves times panels, see `kernels.swell.PANELS`: passes would take many seconds."""
 _TREES: WeakKeyDictionary[TriMesh, dict[float, Tree]] = WeakKeyDictionary()
 
 
@@ -64,7 +66,7 @@ class Exact:
         """Prepare hulls: refine their meshes for the waves, build their trees.
 
         Raises:
-            WaterError: waves that are too short for so long a hull.
+            WaterError: waves that are too short for so long a hull, or too many.
         """
         return PackedHulls(hulls, water, self.tolerance)
 
@@ -85,13 +87,13 @@ class PackedHulls:
             tolerance: see `Exact.tolerance`.
 
         Raises:
-            WaterError: waves that are too short for so long a hull.
+            WaterError: waves that are too short for so long a hull, or too many.
         """
-        _check_wavelengths(hulls.meshes, water)
         meshes, fills = hulls.meshes, hulls.fills
+        self._sea = sea_arrays(water)
+        _check_waves(max(0.5 * float(np.linalg.norm(m.extents)) for m in meshes), self._sea.waves)
         edges = _longest_edges(meshes, hulls.bodies, water, tolerance)
         trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
-        self._sea = sea_arrays(water)
         self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, self._sea.waves))
         """The hulls as kernels read them."""
         spans = self.hulls.spans
@@ -256,21 +258,34 @@ def longest_edge(volume: float, area: float, water: Water, tolerance: float) -> 
     return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
 
 
-def _check_wavelengths(meshes: Sequence[TriMesh], water: Water) -> None:
-    """Refuse waves so short that no pass over the hulls could resolve them.
+def _check_waves(radius: float, waves: NDArray[np.float64]) -> None:
+    """Refuse waves (w, 6) that no pass over a hull of a radius [m] resolves within its time.
 
     Raises:
-        WaterError: the shortest wave is shorter than 2 pi / `MOST_TURNS` of half a hull's diagonal.
+        WaterError: the shortest wave is shorter than 2 pi / `MOST_TURNS` of the radius, or short
+            waves are more than `MOST_PANELS` allows.
     """
-    amplitudes, kx, ky = np.abs(water.rows[:, :3].T)
+    amplitudes, kx, ky = np.abs(waves[:, :3].T)
     steepest = float(np.hypot(kx, ky)[amplitudes > 0.0].max(initial=0.0))
-    radius = max(0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes)
     if steepest * radius > MOST_TURNS:
         raise WaterError(
             f"the water has waves {2.0 * math.pi / steepest:.3g} m long, too short for a hull "
             f"{2.0 * radius:.3g} m from corner to corner, over which waves must be at least "
             f"{2.0 * math.pi * radius / MOST_TURNS:.3g} m long; leave out shorter ones (a sea of "
             "fewer components has longer ones)"
+        )
+
+    # waves that are too short for the polynomials are summed one by one
+    panels = math.ceil(steepest * radius / swell.PANEL)
+    if panels * len(waves) <= MOST_PANELS:
+        return
+    _, limit = local.plan(waves, radius)
+    short = sum(local.remainder(waves, w, radius) > limit for w in range(len(waves)))
+    if short * panels > MOST_PANELS:
+        raise WaterError(
+            f"the water has {short} waves that are short for a hull {2.0 * radius:.3g} m from "
+            f"corner to corner; beside waves {2.0 * math.pi / steepest:.3g} m long it may have "
+            f"{MOST_PANELS // panels} at most: give the sea fewer components"
         )
 
 

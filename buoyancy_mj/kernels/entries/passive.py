@@ -34,7 +34,7 @@ def _evaluate(model, data, water, place, record):
     passes.begin(loads, results)
     for n in range(acting.shape[0]):
         call(acting[n], (model, data, record, water, place))
-    passes.end(engine.time, results)
+    passes.end(engine, results)
 
     # to the forces, and to the mass matrix
     passes.deliver(loads, engine, results)
