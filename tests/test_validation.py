@@ -128,6 +128,12 @@ def test_the_command_runs_cases_and_lists_them():
     result = CliRunner().invoke(app, ["validate", "--only", "small_sphere"])
     assert result.exit_code == 0
     assert "2 of 2 rows hold" in result.output
+    told = CliRunner().invoke(app, ["validate", "--only", "small_sphere", "--out", "pages"])
+    assert told.exit_code == 1
+    assert told.stderr == (
+        "error: --out is 'pages', and its page holds all cases; leave out --only, or --out\n"
+    )
+
     wrong = CliRunner().invoke(app, ["validate", "--only", "spheres"])
     assert wrong.exit_code != 0
     assert "there is no case 'spheres'" in wrong.output
