@@ -184,14 +184,14 @@ def test_a_model_as_cad_writes_it_comes_to_rest_upside_down():
     )
     found = equilibrium(model)
     assert found.stable
-    assert abs(math.degrees(found.hydrostatics.heel)) == pytest.approx(180.0, abs=1e-3)
+    assert math.degrees(found.hydrostatics.heel) == pytest.approx(180.0, abs=1e-3)
     assert pytest.approx(0.0729167, abs=1e-6) == found.hydrostatics.GM
     assert [one.energy for one in equilibria(model)] == pytest.approx([found.energy])
     # what `inspect` says
     (vessel,) = inspect_model(model).vessels
     assert vessel.sentence == (
         "floats: 140 kg reserve, draft 0.133 m, stable, GM 0.0729 m, "
-        "heel -180.0, trim 0.0 degrees, not as drawn"
+        "heel 180.0, trim 0.0 degrees, not as drawn"
     )
 
 

@@ -25,13 +25,19 @@ class Attitude(NamedTuple):
 
         # with the bow straight up or down, heading and heel are one angle: call all of it heel
         if math.hypot(rotation[1, 0], rotation[0, 0]) < 1e-9:
-            return cls(0.0, trim, math.atan2(-rotation[1, 2], rotation[1, 1]))
+            return cls(0.0, trim, _find_heel(-rotation[1, 2], rotation[1, 1]))
         return cls(
             heading=math.atan2(rotation[1, 0], rotation[0, 0]),
             trim=trim,
-            heel=math.atan2(rotation[2, 1], rotation[2, 2]),
+            heel=_find_heel(rotation[2, 1], rotation[2, 2]),
         )
 
     def as_matrix(self) -> NDArray[np.float64]:
         """The rotation world_from_vessel (3, 3) with this attitude."""
         return np.asarray(Rotation.from_euler("ZYX", self).as_matrix(), float)
+
+
+def _find_heel(sine: float, cosine: float) -> float:
+    """The angle [rad] of a sine and a cosine; keel up is pi, and never minus pi by rounding."""
+    heel = math.atan2(sine, cosine)
+    return heel + 2.0 * math.pi if heel < 1e-6 - math.pi else heel
