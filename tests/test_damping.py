@@ -153,6 +153,22 @@ def test_radiation_takes_from_heave_roll_and_pitch_at_the_surface_alone():
     assert "radiation" not in Buoyancy(of({})).causes
 
 
+@pytest.mark.parametrize("method", ["sections", "convex_hull"])
+def test_methods_that_know_no_waterplane_refuse_radiation_damping_by_the_body(method):
+    model = of({"radiation_damping": [50.0, 4.0, 6.0]}, pos="0 0 0")
+    with pytest.raises(MethodError) as caught:
+        Buoyancy(model, Water(), method=method)
+    assert str(caught.value) == (
+        f"the radiation damping of body 'b' needs the method 'exact', not '{method}', "
+        "which knows no waterplane; leave it out, Damping(radiation=False), "
+        "in a scene damping.radiation = false"
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    without = Buoyancy(model, Water(), method=method, damping=Damping(radiation=False))
+    assert np.isfinite(without.evaluate(data).xfrc).all()
+
+
 def test_the_decay_of_heave_is_that_of_its_radiation():
     # (m + A) z'' + b z' + rho g S z = 0: ratio of a crest to the next exp(-pi b / (m_all w)) per
     # half period

@@ -7,8 +7,10 @@ from collections.abc import Callable, Sequence
 import mujoco
 import numpy as np
 
+from buoyancy_mj.errors import MethodError
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import conform, empty
 from buoyancy_mj.kernels.damping import DampingArrays
@@ -141,4 +143,12 @@ def build_load_model(
         else empty(DampingArrays),
         added_mass=resolve_added_mass(model, hulls, water.density, settings.added_mass),
     )
+    if arrays.damping.radiates and not isinstance(packed, PackedHulls):
+        radiating = arrays.damping.bodies[arrays.damping.radiation.any(axis=1)]
+        name = body_name(model, int(radiating[0]))
+        raise MethodError(
+            f"the radiation damping of body '{name}' needs the method 'exact', not "
+            f"'{settings.method.name}', which knows no waterplane; leave it out, "
+            "Damping(radiation=False), in a scene damping.radiation = false"
+        )
     return LoadModel(hulls, sizes, packed, conform(arrays))
