@@ -167,6 +167,27 @@ def test_a_table_under_the_vehicle_stays_and_is_told():
     )
 
 
+@pytest.mark.parametrize(
+    "geom",
+    [
+        'type="sphere" size="1000" pos="0 0 -1000"',
+        'type="ellipsoid" size="9 9 .05" pos="0 0 -.05"',
+        'type="capsule" size="5 5" pos="0 0 -5" euler="0 90 0"',
+        'type="box" size=".02 .02 .5" pos="0 0 -.5"',
+    ],
+)
+def test_round_ground_and_posts_that_reach_the_water_under_the_vehicle_are_told(geom):
+    names, (told,) = judge(f'<geom name="g" {geom}/>')
+    assert names == ["g", "hull"]
+    assert told.endswith(
+        "'g' of its file, which reaches out of the water to z = 0 m, and will rest on it"
+    )
+
+
+def test_a_quay_beside_the_vehicle_is_not_told():
+    assert judge('<geom name="quay" type="box" size="3 3 1" pos="0 -3.3 -.5"/>')[1] == []
+
+
 def test_what_refers_to_the_ground_goes_with_it():
     extra = (
         '<contact><pair geom1="g" geom2="hull"/></contact>'

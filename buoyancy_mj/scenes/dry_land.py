@@ -33,7 +33,7 @@ _LEVEL_COSINE = 0.95
 _AROUND = 3.0
 """How far from the vehicle's middle ground must reach to be left out, over the vehicle's radius."""
 _UNDER = 0.5
-"""The same for ground that the vehicle stands on."""
+"""The same for ground that the vehicle stands on, over half of its beam."""
 _LINES = 7
 """Vertical lines along each side of the square on which the height of ground is measured."""
 _TOUCH = 1e-9
@@ -50,7 +50,7 @@ class _Ground(NamedTuple):
     around: NDArray[np.float64]
     """Heights of its surface around the vehicle (n,) [m]; minus infinity where it is not."""
     under: NDArray[np.float64]
-    """The same under the middle of the vehicle."""
+    """The same under the middle of the vehicle, within half of its beam."""
 
 
 def remove_dry_land(
@@ -78,12 +78,14 @@ def remove_dry_land(
     if dry:
         return
 
-    # what is too small to be left out is told
-    for ground, height in _find_dry([(ground, ground.under) for ground in grounds], level):
-        _warn(
-            f"the vehicle starts above the {ground.title} of its file, which reaches out of the "
-            f"water to z = {height:g} m, and will rest on it"
-        )
+    # what is too small or too round to be left out is told
+    for ground in grounds:
+        height = round(float(ground.under.max()), 9) + 0.0
+        if height >= level - _TOUCH:
+            _warn(
+                f"the vehicle starts above the {ground.title} of its file, which reaches out of "
+                f"the water to z = {height:g} m, and will rest on it"
+            )
 
 
 def _find_dry(
@@ -158,11 +160,13 @@ def _place_lines(
     a bridge is, is no ground.
     """
     bounds = _bound_vehicle(model, data, start)
-    middle, radius = bounds.mean(axis=0), 0.5 * float(np.linalg.norm(np.ptp(bounds[:, :2], axis=0)))
-    offsets = radius * np.linspace(-1.0, 1.0, _LINES)
+    halves = 0.5 * np.ptp(bounds[:, :2], axis=0)
+    offsets = np.linspace(-1.0, 1.0, _LINES)
     square = np.array([(x, y, 0.0) for x, y in itertools.product(offsets, offsets)])
+    middle = bounds.mean(axis=0)
     middle[2] = max(bounds[1, 2], level) + _TOUCH
-    return middle + _AROUND * square, middle + _UNDER * square
+    around = _AROUND * float(np.linalg.norm(halves)) * square
+    return middle + around, middle + _UNDER * float(halves.min()) * square
 
 
 def _bound_vehicle(

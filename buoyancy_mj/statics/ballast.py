@@ -111,7 +111,8 @@ def ballast(
         mass_density: of the ballast [kg/m^3].
         foam_density: of the foam [kg/m^3].
         start: coordinates of the model (nq,), for its joints; `model.qpos0` if None.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:

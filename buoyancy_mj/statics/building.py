@@ -42,8 +42,8 @@ def build_vessel(
         water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
         qpos: coordinates of the model (nq,), or of the root's free joint alone (7,); `model.qpos0`
             if None.
-        body: name of a root body, where several float; the first that has hulls if None. Of a
-            vessel of several trees it may be the root of any.
+        body: name of a root body, where several float; the first that floats freely and has hulls
+            if None. Of a vessel of several trees it may be the root of any.
         selection: which geoms displace water, and as what.
 
     Raises:
@@ -145,7 +145,11 @@ class _Masses(NamedTuple):
 def _find_vessel(
     model: mujoco.MjModel, with_hulls: Sequence[int], name: str | None
 ) -> tuple[NDArray[np.int64], int]:
-    """Bodies of a vessel and its root, by the name of one of its roots; of the first if None."""
+    """Bodies of a vessel and its root, by the name of one of its roots.
+
+    If that is None, it is the first that floats freely, as a crane on a pier does not; the first of
+    all where none does.
+    """
     vessels = [
         bodies for bodies in group_floating_bodies(model) if np.isin(with_hulls, bodies).any()
     ]
@@ -155,7 +159,10 @@ def _find_vessel(
         for root in list_roots(model, bodies)
     }
     if name is None:
-        name = body_name(model, int(model.tree_bodyadr[model.body_treeid[with_hulls[0]]]))
+        free = [bodies for bodies in vessels if find_tether(model, bodies) is None]
+        first = (free or vessels)[0]
+        own = [body for body in with_hulls if body in first]
+        name = body_name(model, list_roots(model, np.array(own))[0])
     if name not in roots:
         raise ModelError(f"no body '{name}' floats in this model; {choices(name, roots)}")
     return roots[name]

@@ -107,7 +107,8 @@ def righting_arm(
         start: coordinates of the upright model (nq,), or of its free joint alone (7,);
             `model.qpos0` if None.
         points: globs of the sites to watch, as deck edges and downflooding points.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
