@@ -94,7 +94,8 @@ def wind_alike(
 
 def _drop_degenerate(f: NDArray[np.int64]) -> NDArray[np.int64]:
     """Triangles (m, 3) with three corners."""
-    return f[(f[:, 0] != f[:, 1]) & (f[:, 1] != f[:, 2]) & (f[:, 2] != f[:, 0])]
+    proper = (f[:, 0] != f[:, 1]) & (f[:, 1] != f[:, 2]) & (f[:, 2] != f[:, 0])
+    return np.asarray(f[proper], np.int64)
 
 
 def _find_open_edges(f: NDArray[np.int64]) -> NDArray[np.int64]:
