@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
+from buoyancy_mj.hulls.tethers import has_free_joint
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.heights import SQUARE, TOUCH, bound_geoms, find_heights
 
@@ -58,9 +59,14 @@ def _list_contacts(
 def _list_grounds(
     model: mujoco.MjModel, data: mujoco.MjData, vehicles: Mapping[str, Vehicle], level: float
 ) -> Iterator[str]:
-    """Sentences on what is fixed under a vehicle and reaches out of the water."""
+    """Sentences on what is fixed under a vehicle that floats and reaches out of the water.
+
+    What hangs on joints, as a crane on its pier, does not come down on it.
+    """
     fixed = _find_fixed_geoms(model).tolist()
     for vehicle in vehicles.values():
+        if not has_free_joint(model, vehicle.root):
+            continue
         subject = "the vehicle" if len(vehicles) == 1 else f"vehicle '{vehicle.name}'"
         points = _place_lines(model, data, vehicle)
         for geom in fixed:
