@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import BuoyancyWarning, ModelError, choices
+from buoyancy_mj.errors import BuoyancyWarning, ModelError, choices, describe
 from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.gravity import find_weighing_masses, read_gravity
@@ -64,6 +64,8 @@ def build_vessel_from_hulls(
     body: str | None = None,
 ) -> Vessel:
     """Build a vessel of a model with hulls at hand; see `build_vessel`."""
+    if not isinstance(water, Water | None):
+        raise ModelError(f"water is {describe(water)}; it must be a Water, as Water(density=1025)")
     gravity = read_gravity(model, required=True)
     bodies, root = _find_vessel(model, [hull.body for hull in hulls], body)
     tether = find_tether(model, bodies)
@@ -174,12 +176,16 @@ def _read_qpos(
     """Coordinates of the model (nq,), and the pose (7,) of the root's free joint if given alone."""
     if qpos is None:
         return model.qpos0.copy(), None
-    values = np.asarray(qpos, float)
+    try:
+        values = np.asarray(qpos, float)
+    except (TypeError, ValueError):
+        values = np.full((), np.nan)
     free = has_free_joint(model, root)
     alone = free and values.shape == (7,)
     if not (alone or values.shape == (model.nq,)) or not np.isfinite(values).all():
+        given = f"has shape {values.shape}" if values.ndim else f"is {describe(qpos)}"
         raise ModelError(
-            f"qpos has shape {values.shape}; it must be {model.nq} finite coordinates of the model"
+            f"qpos {given}; it must be {model.nq} finite coordinates of the model"
             + (", or position and quaternion (7,) of its free joint" if free else "")
         )
     return (model.qpos0.copy(), values) if alone else (values.copy(), None)
