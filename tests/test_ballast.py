@@ -224,6 +224,8 @@ def test_without_a_place_the_missing_mass_is_told():
         ({}, "ballast needs either a draft"),
         ({"draft": 0.2, "reserve": 0.0}, "ballast needs either a draft"),
         ({"draft": math.nan}, "all must be finite"),
+        ({"draft": "x"}, r"bg are \['x', 0.0, 0.0\], .* all must be finite numbers"),
+        ({"draft": 0.2, "foam_density": "x"}, "densities 11340.0 and x; all must be finite numb"),
         ({"draft": 0.2, "mass_density": 0.0}, "densities positive"),
         (
             {"draft": 0.2, "masses": "lead*"},

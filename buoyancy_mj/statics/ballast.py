@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import numbers
 import warnings
 from collections.abc import Iterator, Sequence
 
@@ -159,12 +160,13 @@ def _check_numbers(
         raise ModelError(
             "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral; not both"
         )
-    numbers = [value for value in (draft, reserve, *others) if value is not None]
-    if not all(map(math.isfinite, numbers)) or not all(density > 0.0 for density in densities):
+    given = [value for value in (draft, reserve, *others) if value is not None]
+    are_numbers = all(isinstance(value, numbers.Real) for value in (*given, *densities))
+    if not (are_numbers and all(map(math.isfinite, given)) and min(densities) > 0.0):
         raise ModelError(
-            f"draft or reserve, heel, trim and bg are {numbers}, "
-            f"densities {densities[0]:g} and {densities[1]:g}; "
-            "all must be finite, densities positive"
+            f"draft or reserve, heel, trim and bg are {given}, "
+            f"densities {' and '.join(map(str, densities))}; "
+            "all must be finite numbers, densities positive"
         )
 
 
