@@ -10,8 +10,9 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from buoyancy_mj import BuoyancyWarning
-from buoyancy_mj.scenes.dry_land import _find_hull_heights, remove_dry_land
+from buoyancy_mj import BuoyancyWarning, Scene, Start
+from buoyancy_mj.scenes.dry_land import remove_dry_land
+from buoyancy_mj.scenes.heights import _find_hull_heights
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
@@ -158,13 +159,68 @@ def test_tiles_are_one_ground():
     assert len(told) == 2
 
 
-def test_a_table_under_the_vehicle_stays_and_is_told():
-    names, (told,) = judge('<geom name="table" type="box" size=".3 .3 .5" pos="0 0 -.4"/>')
-    assert names == ["table", "hull"]
-    assert told == (
-        "the vehicle starts above the box 'table' of its file, which reaches out of the water to "
-        "z = 0.1 m, and will rest on it"
+def start_above(tmp_path, ground, **scene):
+    """What is told where the boat starts at the origin, over ground of its environment."""
+    boat, land = tmp_path / "boat.xml", tmp_path / "land.xml"
+    boat.write_text(BOAT.format(ground="", extra=""))
+    land.write_text(f"<mujoco><worldbody>{ground}</worldbody></mujoco>")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", BuoyancyWarning)
+        Simulation(Scene(title="land", vehicle=boat, environment=land, **scene))
+    return [str(entry.message) for entry in caught]
+
+
+RESTS = "which reaches out of the water to z = {:g} m, and will rest on it"
+
+
+def test_a_table_under_the_vehicle_stays_and_is_told(tmp_path):
+    table = '<geom name="table" type="box" size=".3 .3 .5" pos="0 0 -.4"/>'
+    assert judge(table) == (["table", "hull"], [])
+    path = tmp_path / "boat.xml"
+    path.write_text(BOAT.format(ground=table, extra=""))
+    with pytest.warns(BuoyancyWarning) as caught:
+        Simulation(Scene(title="table", vehicle=path, start=Start(position=(0.0, 0.0, 0.3))))
+    assert (
+        str(caught.pop(BuoyancyWarning).message)
+        == f"the vehicle starts above the box 'table', {RESTS.format(0.1)}"
     )
+
+
+@pytest.mark.parametrize(
+    ("kind", "size"),
+    [
+        ("sphere", 'size="1000" pos="0 0 -1000"'),
+        ("ellipsoid", 'size="9 9 .05" pos="0 0 -.05"'),
+        ("capsule", 'size="5 5" pos="0 0 -5" euler="0 90 0"'),
+        ("box", 'size=".02 .02 .5" pos="0 0 -.5"'),
+        ("plane", 'size="9 9 1"'),
+    ],
+)
+def test_ground_of_any_shape_that_reaches_the_water_under_the_vehicle_is_told(tmp_path, kind, size):
+    assert start_above(tmp_path, f'<geom name="g" type="{kind}" {size}/>') == [
+        f"the vehicle starts above the {kind} 'environment/g', {RESTS.format(0.0)}"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("ground", "z"),
+    [
+        ('<geom name="quay" type="box" size="3 3 1" pos="0 -3.2 -.5"/>', 0.0),
+        ('<geom name="bottom" type="plane" size="9 9 1" pos="0 0 -3"/>', 0.0),
+        ('<geom name="ice" type="box" size="9 9 .5"/>', -2.0),
+        ('<geom name="bridge" type="box" size="9 9 .1" pos="0 0 3"/>', 0.0),
+    ],
+)
+def test_what_a_vehicle_does_not_rest_on_is_not_told(tmp_path, ground, z):
+    assert start_above(tmp_path, ground, start=Start(position=(0.0, 0.0, z))) == []
+
+
+def test_a_body_of_the_environment_in_which_the_vehicle_starts_is_told(tmp_path):
+    buoy = '<body name="buoy"><freejoint/><geom size=".1" mass="2"/></body>'
+    assert start_above(tmp_path, buoy) == [
+        "vehicle 'boat' and 'environment/buoy' lie in each other at the start, and contact will "
+        "throw them apart; start the vehicle elsewhere (start.position)"
+    ]
 
 
 def test_what_refers_to_the_ground_goes_with_it():

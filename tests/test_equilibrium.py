@@ -22,6 +22,7 @@ from buoyancy_mj import (
     Water,
     equilibria,
     equilibrium,
+    hydrostatics,
 )
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.meshes import shapes
@@ -476,3 +477,21 @@ def test_a_scene_that_cannot_float_is_told():
 def test_the_wetted_part_is_that_of_its_own_mesh():
     found = equilibrium(vessels.of_mesh(shapes.box((1, 0.5, 0.3)), 600.0), start=tilted(0.2))
     assert found.hydrostatics.wetted_area == pytest.approx(2.0 + 2 * 0.3 * 3.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("model", ["my_auv.xml", None, mujoco.MjSpec()])
+def test_what_is_no_model_is_refused(model):
+    for ask in (equilibrium, hydrostatics, Buoyancy):
+        with pytest.raises(ModelError, match=r"^model is .*; it must be an MjModel, as mujoco\.M"):
+            ask(model)
+
+
+@pytest.mark.parametrize("start", ["x", {}, 3.0, [[1], [1, 2]]])
+def test_coordinates_that_are_no_numbers_are_refused(start):
+    with pytest.raises(ModelError, match=r"^qpos is .*; it must be 7 finite coordinates"):
+        equilibrium(vessels.box(), start=start)
+
+
+def test_statics_in_what_is_no_water_are_refused():
+    with pytest.raises(ModelError, match=r"^water is 3; it must be a Water, as Water\(density"):
+        equilibrium(vessels.box(), 3)

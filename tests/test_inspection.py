@@ -100,6 +100,16 @@ def test_what_hangs_on_joints_is_weighed():
     assert found.rest is None
 
 
+def test_what_is_heavy_and_hangs_on_joints_does_not_sink():
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><worldbody><body name="crane"><joint/>'
+        '<geom type="box" size=".5 .5 .5" mass="1200"/></body></worldbody></mujoco>'
+    )
+    assert only(model).sentence == (
+        "body 'crane' hangs on joints: free, it would sink, 200 kg too heavy"
+    )
+
+
 def test_density_of_the_water_counts():
     assert only(vessels.box(mass=1201.3)).sentence.startswith("sinks")
     (floating,) = inspect_model(vessels.box(mass=1201.3), Water(density=1025.0)).vessels

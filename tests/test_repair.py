@@ -1,6 +1,10 @@
+import re
+
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from buoyancy_mj import MeshError, repair
 from buoyancy_mj.kernels.rays import misenclosed
@@ -9,6 +13,7 @@ from buoyancy_mj.meshes.repair import diagnose
 
 BOX = shapes.box((1.0, 0.5, 0.3))
 SPHERE = trimesh.creation.icosphere(subdivisions=4)
+COARSE = trimesh.creation.icosphere(subdivisions=2)
 
 
 def test_a_good_mesh_is_left_as_it_is():
@@ -21,6 +26,27 @@ def test_a_triangle_soup_is_welded():
     soup = BOX.vertices[BOX.faces].reshape(-1, 3)
     mesh, notices = repair(soup, np.arange(len(soup)).reshape(-1, 3))
     assert len(mesh.vertices) == 8
+    assert notices == []
+
+
+@settings(max_examples=30)
+@given(st.integers(0, 10**6), st.sampled_from((1e-8, 1e-7, 1e-6)))
+def test_seams_that_rounding_opened_are_closed_with_a_notice(seed, noise):
+    rng = np.random.default_rng(seed)
+    soup = COARSE.vertices[COARSE.faces].reshape(-1, 3)
+    soup = soup + noise * rng.uniform(-1.0, 1.0, soup.shape)
+    mesh, notices = repair(soup, np.arange(len(soup)).reshape(-1, 3), name="hull")
+    assert mesh.volume == pytest.approx(COARSE.volume, rel=10 * noise)
+    assert len(mesh.vertices) == len(COARSE.vertices)
+    assert [re.sub(r"\d+ vertices", "N vertices", notice) for notice in notices] == [
+        "hull: N vertices of its seams, which lay up to 1e-05 of its length apart, were joined"
+    ]
+
+
+def test_the_sides_of_a_thin_plate_do_not_become_one():
+    plate = shapes.box((0.5, 0.5, 1e-6))
+    mesh, notices = repair(plate.vertices, plate.faces)
+    assert mesh.volume == pytest.approx(2e-6)
     assert notices == []
 
 

@@ -162,6 +162,8 @@ def test_what_sinks_has_no_curve():
     [
         ({"heel": []}, "heel and axis must be finite angles"),
         ({"heel": [math.nan]}, "heel and axis must be finite angles"),
+        ({"heel": "x"}, "heel and axis must be finite angles"),
+        ({"axis": None}, "heel and axis must be finite angles"),
         ({"trim": "loose"}, "trim is 'loose'; possible: fixed, free"),
         ({"points": "rail*"}, r"no site of the vessel matches 'rail\*'; possible: nothing"),
     ],

@@ -6,15 +6,18 @@ robosuite, example-robot-data and pybullet, none of which are kept here.
 
 import json
 import shlex
+import warnings
+from pathlib import Path
 
 import numpy as np
 import pytest
 import trimesh
 from typer.testing import CliRunner
 
-from buoyancy_mj import repair
+from buoyancy_mj import BuoyancyWarning, repair
 from buoyancy_mj.cli import app
 from buoyancy_mj.meshes import shapes
+from buoyancy_mj.scenes.vehicles import read_vehicle
 from tests import vessels
 
 URDF = """<robot name="robot"><link name="base"><inertial><mass value="{mass}"/>
@@ -176,6 +179,29 @@ def test_what_floats_in_the_environment_is_no_part_of_a_vehicle_whose_bodies_are
     buoys = write(tmp_path, "buoys.xml", BUOYS)
     summary, _ = ran(path, "--set", f"environment='{buoys}'")
     assert summary["displacement"] == pytest.approx(8.08)
+
+
+DRAWN = """<mujoco><compiler fusestatic="{flag}"/>{words}<worldbody><body name="b"><freejoint/>
+<geom name="hull" type="box" size=".3 .1 .1" mass="9"/><body name="pod" pos="0 0 -.5">
+<geom name="pod" type="box" size=".2 .1 .1" contype="0" conaffinity="0" mass="1"/>
+</body></body></worldbody></mujoco>"""
+
+
+def test_what_is_drawn_alone_and_fused_with_what_collides_is_told(tmp_path):
+    def notices(flag, words=""):
+        path = write(tmp_path, "rov.xml", DRAWN.format(flag=flag, words=words))
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", BuoyancyWarning)
+            read_vehicle(Path(path))
+        return [str(entry.message) for entry in caught]
+
+    assert notices("true") == [
+        "the vehicle has MuJoCo fuse its fixed bodies (fusestatic), and 'pod', of bodies that are "
+        "only drawn, displace nothing beside the collision geoms with which they are fused; name "
+        "them among the geoms, or set fusestatic='false'"
+    ]
+    assert notices("false") == []
+    assert notices("true", '<custom><text name="buoyancy_geoms" data="*"/></custom>') == []
 
 
 # plates

@@ -389,6 +389,24 @@ def test_a_vessel_that_is_held_to_a_place_is_refused_by_name(equality, message):
     assert found.sentence.startswith(f"{how}: free, it would float with ")
 
 
+def test_statics_are_those_of_the_first_body_that_floats_freely_not_of_a_crane_before_it():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody>
+        <body name="pier" pos="6 0 0"><geom type="box" size=".5 2 1" mass="5000"/>
+          <body name="crane" pos="0 0 1.2"><joint axis="0 0 1"/>
+            <geom type="box" size="2 .1 .1" pos="-2 0 0" mass="500"/></body></body>
+        <body name="boat"><freejoint/><geom type="box" size=".5 .3 .1" mass="30"/></body>
+        </worldbody></mujoco>"""
+    )
+    assert equilibrium(model).hydrostatics.draft == pytest.approx(0.05)
+    assert hydrostatics(model).mass == pytest.approx(30.0)
+    assert len(equilibria(model)) == 2
+    assert righting_arm(model, heel=[0.1]).gz[0] > 0.0
+    for search in (equilibrium, equilibria):
+        with pytest.raises(ModelError, match=r"^body 'crane' hangs on joints and is not free"):
+            search(model, body="crane")
+
+
 def test_a_scene_that_should_start_at_rest_and_is_held_is_refused_by_name(tmp_path):
     path = tmp_path / "moored.xml"
     moored = '<weld name="dock" body1="deck"/></equality>'

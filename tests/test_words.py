@@ -440,6 +440,16 @@ WRONG = [
         f"did you mean 'added_mass:BODY'? {POSSIBLE}",
     ),
     (
+        numeric("added_mass_hull"),
+        "the numeric 'added_mass_hull' is none that water reads; "
+        f"did you mean 'added_mass:BODY'? {POSSIBLE}",
+    ),
+    (
+        numeric("linear_damping.hull"),
+        "the numeric 'linear_damping.hull' is none that water reads; "
+        f"did you mean 'linear_damping:BODY'? {POSSIBLE}",
+    ),
+    (
         text("bouyancy_geoms", "box"),
         "the text 'bouyancy_geoms' is none that water reads; "
         f"did you mean 'buoyancy_geoms'? {POSSIBLE}",
@@ -554,6 +564,9 @@ def test_so_it_is_under_a_prefix(prefix):
     )
     assert refused("buoyancy_fill", "buoyancy_fills").startswith(
         f"the text '{prefix}buoyancy_fills' is none that water reads; did you mean 'buoyancy_fill'"
+    )
+    assert refused("added_mass:", "added_mass_").startswith(
+        f"the numeric '{prefix}added_mass_rov' is none that water reads; did you mean 'added_mass:B"
     )
     assert refused("added_mass:", "aded_mass:").startswith(
         f"the numeric '{prefix}aded_mass:rov' is none that water reads; did you mean 'added_mass:B"

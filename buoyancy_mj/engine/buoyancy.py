@@ -25,6 +25,7 @@ from buoyancy_mj.errors import EngineError
 from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.verdicts import check_model
 from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.kernels.passes import Record
 from buoyancy_mj.loads.loads import Loads
@@ -82,6 +83,7 @@ class Buoyancy(ReadOnly):
         """The sea."""
 
         # what water asks of a model
+        check_model(model)
         check_actuation(model)
         check_sleep(model)
         read_gravity(model)

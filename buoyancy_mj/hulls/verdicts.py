@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.errors import BuoyancyWarning, ModelError, describe
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import body_name, geom_kind
 from buoyancy_mj.hulls.patterns import Pool, pool_of_file, pool_of_model
@@ -61,6 +61,7 @@ def judge_geoms(
         ModelError: no geom is left, or a pattern or anything else in `<custom>` finds nothing to
             hold for.
     """
+    check_model(model)
     check_custom_names(model)
 
     # some geoms can never displace water, others do not displace this one
@@ -94,6 +95,19 @@ def judge_geoms(
         Verdict(g, g in reasons, reasons.get(g) or (refusals | outside | left_out)[g])
         for g in range(model.ngeom)
     )
+
+
+def check_model(model: mujoco.MjModel) -> None:
+    """Refuse what is no compiled model, such as a path or a spec.
+
+    Raises:
+        ModelError: it is none.
+    """
+    if not isinstance(model, mujoco.MjModel):
+        raise ModelError(
+            f"model is {describe(model)}; it must be an MjModel, as "
+            "mujoco.MjModel.from_xml_path('my_auv.xml') or spec.compile() gives it"
+        )
 
 
 def _nothing_displaces(candidates: Collection[int], outside: Collection[int]) -> ModelError:

@@ -150,7 +150,7 @@ def check_custom_names(model: mujoco.MjModel) -> None:
                 f"'{name}' is a <{kind}> and is read only as a <{needed}>; make it one"
             )
         known = needed and _is_plausible(model, name)
-        if not known and (near := _find_near_keyword(name)):
+        if not known and (near := _find_near_keyword(name) or _find_near_colon(model, name)):
             raise ModelError(
                 f"the {kind} '{name}' is none that water reads; "
                 f"{choices(near, [*CUSTOM_TEXTS.values(), *(f'{q}:BODY' for q in QUANTITIES)])}"
@@ -191,6 +191,19 @@ def _find_near_keyword(name: str) -> str:
     if likeness < _ALIKE:
         return ""
     return f"{keyword}:BODY" if colon else keyword
+
+
+def _find_near_colon(model: mujoco.MjModel, name: str) -> str:
+    """The keyword of a name that has another sign for the colon, as 'added_mass_hull'.
+
+    What stands behind the sign must be the name of a body; '' if there is none.
+    """
+    match = re.search(rf"({'|'.join(QUANTITIES)})[\W_]+(?=\w)", name)
+    if match is None:
+        return ""
+    named = name[: match.start()] + name[match.end() :]
+    bodies = (str(model.body(body).name) for body in range(1, model.nbody))
+    return f"{match[1]}:BODY" if named in bodies else ""
 
 
 def _likeness(name: str, keyword: str) -> float:

@@ -83,6 +83,7 @@ def _describe_state(mesh: Diagnosis) -> str:
     joined = 1e3 * mesh.joined_volume
     crossing = 1e3 * (mesh.doubled_volume + mesh.inside_out_volume)
     faults = (
+        (mesh.stitched, f"{mesh.stitched} vertices joined"),
         (mesh.backwards, f"{mesh.backwards} wound backwards"),
         (mesh.inverted, f"{mesh.inverted} inside out"),
         (mesh.degenerate, f"{mesh.degenerate} degenerate"),

@@ -36,13 +36,16 @@ def write_sentence(vessel: Vessel, rest: Equilibrium | None, refused: Sequence[s
             f"{vessel.whole_mass:.4g} kg"
         )
     tolerance = NEUTRAL * vessel.mass
-    if reserve < -tolerance:
-        return f"sinks: {-reserve:.3g} kg too heavy"
+    sinks = reserve < -tolerance
     if vessel.tether is not None:
-        return (
-            f"body '{vessel.tether.body}' {vessel.tether.how}: free, it would float with "
-            f"{reserve:.3g} kg reserve"
+        fate = (
+            f"sink, {-reserve:.3g} kg too heavy"
+            if sinks
+            else f"float with {reserve:.3g} kg reserve"
         )
+        return f"body '{vessel.tether.body}' {vessel.tether.how}: free, it would {fate}"
+    if sinks:
+        return f"sinks: {-reserve:.3g} kg too heavy"
     if rest is None:
         return f"floats: {reserve:.3g} kg reserve, but no rest pose was found"
     at = rest.hydrostatics

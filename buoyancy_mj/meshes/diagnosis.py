@@ -35,6 +35,8 @@ class Diagnosis:
     """Triangles without area, which were dropped."""
     duplicates: int = 0
     """Repeated triangles, which were dropped."""
+    stitched: int = 0
+    """Vertices of open edges that rounding had set apart, which were merged."""
     backwards: int = 0
     """Triangles wound against their neighbours, which were turned."""
     holes: tuple[Hole, ...] = ()
@@ -66,6 +68,7 @@ class Diagnosis:
         return bool(
             self.degenerate
             or self.duplicates
+            or self.stitched
             or self.backwards
             or self.holes
             or self.inverted

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
-from buoyancy_mj.meshes.cleaning import merge_vertices, wind_alike
+from buoyancy_mj.meshes.cleaning import close_seams, merge_vertices, wind_alike
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.holes import close_holes
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -30,9 +30,9 @@ LONGEST = 1e3
 def repair(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[TriMesh, list[str]]:
     """Make a hull of any mesh, and report each repair in a sentence.
 
-    Vertices at the same place become one. Faces without area are dropped. Faces are wound alike
-    and outward. Small holes are closed; each makes the volume of a dome over it uncertain. Pieces
-    that overlap are joined by a boolean union.
+    Vertices at the same place become one, and seams that rounding opened are closed. Faces without
+    area are dropped. Faces are wound alike and outward. Small holes are closed; each makes the
+    volume of a dome over it uncertain. Pieces that overlap are joined by a boolean union.
 
     Args:
         vertices: corners (n, 3) [m].
@@ -83,6 +83,7 @@ def _repair(report: Diagnosis, vertices: ArrayLike, faces: ArrayLike) -> TriMesh
 
     # one closed surface, wound outward
     v, f = merge_vertices(report, v, f)
+    v, f = close_seams(report, v, f)
     f = wind_alike(report, v, f)
     v, f = close_holes(report, v, f)
     pieces = turn_outward(report, v, f)

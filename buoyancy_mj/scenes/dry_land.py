@@ -17,27 +17,16 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import ConvexHull
 
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import geom_kind, geom_name
+from buoyancy_mj.scenes.heights import SQUARE, TOUCH, bound_geoms, find_heights
 from buoyancy_mj.scenes.specs import compile_spec
 
-_PLANE, _HEIGHT_FIELD, _MESH, _SDF = (
-    int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "HFIELD", "MESH", "SDF")
-)
 _GEOM = mujoco.mjtObj.mjOBJ_GEOM
-_LEVEL_COSINE = 0.95
-"""Cosine of the slope up to which a plane counts as level ground."""
 _AROUND = 3.0
 """How far from the vehicle's middle ground must reach to be left out, over the vehicle's radius."""
-_UNDER = 0.5
-"""The same for ground that the vehicle stands on."""
-_LINES = 7
-"""Vertical lines along each side of the square on which the height of ground is measured."""
-_TOUCH = 1e-9
-"""Depth [m] up to which ground counts as level with the water."""
 
 
 class _Ground(NamedTuple):
@@ -49,8 +38,6 @@ class _Ground(NamedTuple):
     """What messages call it."""
     around: NDArray[np.float64]
     """Heights of its surface around the vehicle (n,) [m]; minus infinity where it is not."""
-    under: NDArray[np.float64]
-    """The same under the middle of the vehicle."""
 
 
 def remove_dry_land(
@@ -68,39 +55,30 @@ def remove_dry_land(
         ModelError: MuJoCo cannot compile the vehicle.
     """
     grounds = _measure_grounds(spec, path, level, start)
-    dry = _find_dry([(ground, ground.around) for ground in grounds], level)
+    dry = _find_dry(grounds, level)
     for ground, height in dry:
         _warn(
             f"the vehicle's ground {ground.title} at z = {height:g} m would keep out "
             f"the water at {level:g} m and was left out"
         )
         _remove_geom(spec, ground.geom)
-    if dry:
-        return
-
-    # what is too small to be left out is told
-    for ground, height in _find_dry([(ground, ground.under) for ground in grounds], level):
-        _warn(
-            f"the vehicle starts above the {ground.title} of its file, which reaches out of the "
-            f"water to z = {height:g} m, and will rest on it"
-        )
 
 
-def _find_dry(
-    heights: Sequence[tuple[_Ground, NDArray[np.float64]]], level: float
-) -> list[tuple[_Ground, float]]:
+def _find_dry(grounds: Sequence[_Ground], level: float) -> list[tuple[_Ground, float]]:
     """Grounds that lie above the water on all lines, each alone or all together.
 
     Returns:
         Each, with its lowest height where it does lie above the water [m].
     """
-    dry = [(ground, over) for ground, over in heights if over.min() >= level - _TOUCH]
+    heights = [(ground, ground.around) for ground in grounds]
+    dry = [(ground, around) for ground, around in heights if around.min() >= level - TOUCH]
     if not dry and heights:
-        together = np.max([over for _, over in heights], axis=0)
-        if together.min() >= level - _TOUCH:
-            dry = [(ground, over) for ground, over in heights if over.max() >= level - _TOUCH]
+        together = np.max([around for _, around in heights], axis=0)
+        if together.min() >= level - TOUCH:
+            dry = [(ground, around) for ground, around in heights if around.max() >= level - TOUCH]
     return [
-        (ground, round(float(over[over >= level - _TOUCH].min()), 9) + 0.0) for ground, over in dry
+        (ground, round(float(around[around >= level - TOUCH].min()), 9) + 0.0)
+        for ground, around in dry
     ]
 
 
@@ -120,13 +98,12 @@ def _measure_grounds(
     mujoco.mj_kinematics(model, data)
     twins = [geom for geom in _list_fixed_geoms(copy.worldbody) if _touches(geom, copy)]
 
-    around, under = _place_lines(model, data, level, start)
+    around = _place_lines(model, data, level, start)
     return [
         _Ground(
             geom,
             f"{geom_kind(model, twin.id)} '{geom_name(model, twin.id)}'",
-            _find_heights(model, data, twin.id, around),
-            _find_heights(model, data, twin.id, under),
+            find_heights(model, data, twin.id, around),
         )
         for geom, twin in zip(fixed, twins, strict=True)
     ]
@@ -151,18 +128,17 @@ def _touches(geom: mujoco.MjsGeom, spec: mujoco.MjSpec) -> bool:
 
 def _place_lines(
     model: mujoco.MjModel, data: mujoco.MjData, level: float, start: ArrayLike | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points (n, 3) [m] from which to look down: around the vehicle, and over its middle.
+) -> NDArray[np.float64]:
+    """Points (n, 3) [m] around the vehicle from which to look down.
 
     They lie at the vehicle's top or the water's level, whichever is higher: what is above them, as
     a bridge is, is no ground.
     """
     bounds = _bound_vehicle(model, data, start)
-    middle, radius = bounds.mean(axis=0), 0.5 * float(np.linalg.norm(np.ptp(bounds[:, :2], axis=0)))
-    offsets = radius * np.linspace(-1.0, 1.0, _LINES)
-    square = np.array([(x, y, 0.0) for x, y in itertools.product(offsets, offsets)])
-    middle[2] = max(bounds[1, 2], level) + _TOUCH
-    return middle + _AROUND * square, middle + _UNDER * square
+    middle = bounds.mean(axis=0)
+    middle[2] = max(bounds[1, 2], level) + TOUCH
+    radius = 0.5 * float(np.linalg.norm(np.ptp(bounds[:, :2], axis=0)))
+    return np.asarray(middle + _AROUND * radius * SQUARE, float)
 
 
 def _bound_vehicle(
@@ -174,75 +150,10 @@ def _bound_vehicle(
     tree = model.body_treeid == model.body_treeid[first]
     geoms = np.flatnonzero(tree[model.geom_bodyid])
 
-    # boxes around the geoms, turned as these are; without geoms the place of the body
-    turns = data.geom_xmat[geoms].reshape(-1, 3, 3)
-    middles = data.geom_xpos[geoms] + np.einsum("gij,gj->gi", turns, model.geom_aabb[geoms, :3])
-    halves = np.einsum("gij,gj->gi", np.abs(turns), model.geom_aabb[geoms, 3:])
-    corners = np.vstack([middles - halves, middles + halves, data.xpos[first][None]])
-    bounds = np.array([corners.min(axis=0), corners.max(axis=0)])
+    bounds = bound_geoms(model, data, geoms, data.xpos[first])
     if start is not None and len(free):
         bounds += np.asarray(start, float) - data.xpos[first]
     return bounds
-
-
-def _find_heights(
-    model: mujoco.MjModel, data: mujoco.MjData, geom: int, points: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Heights (n,) [m] of a geom's surface under points (n, 3), minus infinity where there is none.
-
-    A point inside the geom has its top above it. A mesh is its convex hull, as for its contacts.
-    """
-    kind = int(model.geom_type[geom])
-    turn, middle = data.geom_xmat[geom].reshape(3, 3), data.geom_xpos[geom]
-    if kind == _PLANE:
-        return np.full(len(points), middle[2] if turn[2, 2] > _LEVEL_COSINE else -np.inf)
-    if kind == _SDF:
-        # it is no ground: its contacts are with the surface that it draws
-        return np.full(len(points), -np.inf)
-    if kind == _MESH:
-        return _find_hull_heights(_list_vertices(model, geom) @ turn.T + middle, points)
-
-    # a height field has one surface, which is found from above it
-    box = model.geom_aabb[geom]
-    top = float(middle[2] + turn[2] @ box[:3] + np.abs(turn[2]) @ box[3:])
-    down, normal = np.array([0.0, 0.0, -1.0]), np.zeros(3)
-    heights = []
-    for point in points:
-        if kind == _HEIGHT_FIELD:
-            start = np.array([point[0], point[1], max(point[2], top + 1.0)])
-            distance = mujoco.mj_rayHfield(model, data, geom, start, down, normal)
-        else:
-            start, size = point, model.geom_size[geom]
-            distance = mujoco.mju_rayGeom(middle, turn.ravel(), size, start, down, kind, normal)
-        below = start[2] - distance if normal[2] > 0.0 else top
-        heights.append(below if distance >= 0.0 else -np.inf)
-    return np.array(heights)
-
-
-def _list_vertices(model: mujoco.MjModel, geom: int) -> NDArray[np.float64]:
-    """Vertices (n, 3) [m] of the mesh of a geom, in its frame."""
-    mesh = model.geom_dataid[geom]
-    first = model.mesh_vertadr[mesh]
-    return np.asarray(model.mesh_vert[first : first + model.mesh_vertnum[mesh]], float)
-
-
-def _find_hull_heights(
-    vertices: NDArray[np.float64], points: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """The same for the convex hull of vertices (m, 3) [m].
-
-    It is where all half spaces n . x + d <= 0 of its facets meet, whose vertical lines have ends.
-    """
-    equations = ConvexHull(vertices).equations
-    upward = equations[:, 2]
-    beside = points[:, :2] @ equations[:, :2].T + equations[:, 3]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ends = -beside / upward
-    upper = np.where(upward > 0.0, ends, np.inf).min(axis=1)
-    lower = np.where(upward < 0.0, ends, -np.inf).max(axis=1)
-    outside = ((upward == 0.0) & (beside > 0.0)).any(axis=1)
-    reached = ~outside & (lower <= upper) & (lower <= points[:, 2])
-    return np.where(reached, upper, -np.inf)
 
 
 def _remove_geom(spec: mujoco.MjSpec, geom: mujoco.MjsGeom) -> None:

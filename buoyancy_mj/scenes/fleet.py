@@ -3,7 +3,7 @@
 import dataclasses
 import functools
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import mujoco
 import numpy as np
@@ -144,28 +144,3 @@ def _warn_of_compensation(vehicle: Vehicle, subject: str) -> None:
             BuoyancyWarning,
             stacklevel=4,
         )
-
-
-def warn_of_contact(
-    model: mujoco.MjModel, data: mujoco.MjData, vehicles: Mapping[str, Vehicle]
-) -> None:
-    """Warn of vehicles that lie in each other at the start: contact would throw them apart.
-
-    Args:
-        model: the model of a scene.
-        data: its poses at the start, after mj_fwdPosition.
-        vehicles: its vehicles by name.
-    """
-    owners = np.zeros(model.nbody, int)
-    for number, vehicle in enumerate(vehicles.values(), 1):
-        owners[vehicle.bodies] = number
-    pairs = owners[model.geom_bodyid[data.contact.geom[data.contact.dist < 0.0]]]
-    names = ["", *vehicles]
-    for one, other in sorted({(min(pair), max(pair)) for pair in pairs.tolist()}):
-        if one > 0 and one != other:
-            warnings.warn(
-                f"vehicles '{names[one]}' and '{names[other]}' lie in each other at the start, and "
-                "contact will throw them apart; start one of them elsewhere (start.position)",
-                BuoyancyWarning,
-                stacklevel=4,
-            )

@@ -19,10 +19,11 @@ from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.divergence import Limits
-from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles, warn_of_contact
+from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles
 from buoyancy_mj.scenes.frames import Frame, take_only
 from buoyancy_mj.scenes.monitor import Monitor
 from buoyancy_mj.scenes.observer import Observer
+from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.summary import LAST, Summary
 from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
@@ -76,7 +77,7 @@ class Simulation(ReadOnly):
             self._frame_data = mujoco.MjData(self.model)
             self._copy_state()
             mujoco.mj_fwdPosition(self.model, self._frame_data)
-        warn_of_contact(self.model, self._frame_data, self.vehicles)
+        warn_of_obstacles(self.model, self._frame_data, self.vehicles, scene.water.level)
         self._limits = Limits(scene, self.model, self._frame_data)
 
         # what a run leaves

@@ -8,6 +8,11 @@ import numpy as np
 
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.bodies import find_moving_bodies
+from buoyancy_mj.hulls.custom import read_all_texts
+from buoyancy_mj.hulls.names import geom_name
+from buoyancy_mj.hulls.selection import CUSTOM_TEXTS
+from buoyancy_mj.hulls.verdicts import SOLID_TYPES
 from buoyancy_mj.scenes.specs import compile_spec, read_spec
 from buoyancy_mj.scenes.urdf import add_missing_inertia, is_urdf
 
@@ -33,8 +38,43 @@ def read_vehicle(path: Path) -> mujoco.MjSpec:
 
     # the compiler fuses bodies in the spec itself, which then has those of the model
     if spec.compiler.fusestatic:
+        # a URDF does not say so: there links that are fixed to others are a part of them
+        drawn = [] if is_urdf(path) else _list_drawn_geoms(spec, path)
         compile_spec(spec, path)
+        kept = {body.name for body in spec.bodies}
+        lost = [geom for body, geom in drawn if body not in kept]
+        if lost:
+            warnings.warn(
+                f"the vehicle has MuJoCo fuse its fixed bodies (fusestatic), and {', '.join(lost)},"
+                " of bodies that are only drawn, displace nothing beside the collision geoms with "
+                "which they are fused; name them among the geoms, or set fusestatic='false'",
+                BuoyancyWarning,
+                stacklevel=4,
+            )
     return spec
+
+
+def _list_drawn_geoms(spec: mujoco.MjSpec, path: Path) -> list[tuple[str, str]]:
+    """Geoms of bodies that are only drawn, fixed to others that collide: names of body and geom.
+
+    Where the file chooses its geoms itself there are none.
+    """
+    whole = spec.copy()
+    whole.compiler.fusestatic = False
+    model = compile_spec(whole, path)
+    if any(CUSTOM_TEXTS["geoms"] in name for name in read_all_texts(model)):
+        return []
+    solid = (
+        np.isin(model.geom_type, list(SOLID_TYPES)) & find_moving_bodies(model)[model.geom_bodyid]
+    )
+    collides = solid & ((model.geom_contype != 0) | (model.geom_conaffinity != 0))
+    carriers = model.body_weldid[model.geom_bodyid]
+    alone = ~np.isin(model.geom_bodyid, model.geom_bodyid[collides])
+    drawn = solid & alone & np.isin(carriers, carriers[collides]) & (carriers != model.geom_bodyid)
+    return [
+        (str(model.body(model.geom_bodyid[geom]).name), f"'{geom_name(model, geom)}'")
+        for geom in np.flatnonzero(drawn).tolist()
+    ]
 
 
 def _add_free_joint(spec: mujoco.MjSpec, path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import numbers
 import warnings
 from collections.abc import Iterator, Sequence
 
@@ -111,7 +112,8 @@ def ballast(
         mass_density: of the ballast [kg/m^3].
         foam_density: of the foam [kg/m^3].
         start: coordinates of the model (nq,), for its joints; `model.qpos0` if None.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
@@ -158,12 +160,13 @@ def _check_numbers(
         raise ModelError(
             "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral; not both"
         )
-    numbers = [value for value in (draft, reserve, *others) if value is not None]
-    if not all(map(math.isfinite, numbers)) or not all(density > 0.0 for density in densities):
+    given = [value for value in (draft, reserve, *others) if value is not None]
+    are_numbers = all(isinstance(value, numbers.Real) for value in (*given, *densities))
+    if not (are_numbers and all(map(math.isfinite, given)) and min(densities) > 0.0):
         raise ModelError(
-            f"draft or reserve, heel, trim and bg are {numbers}, "
-            f"densities {densities[0]:g} and {densities[1]:g}; "
-            "all must be finite, densities positive"
+            f"draft or reserve, heel, trim and bg are {given}, "
+            f"densities {' and '.join(map(str, densities))}; "
+            "all must be finite numbers, densities positive"
         )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import BallastError, ModelError
+from buoyancy_mj.errors import BallastError, ModelError, describe
 from buoyancy_mj.meshes.surface import winding_number
 from buoyancy_mj.statics.floating_pose import FloatingPose
 from buoyancy_mj.statics.vessel import Vessel
@@ -50,8 +50,8 @@ def find_ballast_sites(
         ModelError: a glob matches no site, or a box is none.
     """
     vessel = pose.vessel
-    words = [where] if isinstance(where, str) else list(where)  # type: ignore[arg-type]
-    if all(isinstance(word, str) for word in words):
+    words = [where] if isinstance(where, str) else where
+    if isinstance(words, Sequence) and all(isinstance(word, str) for word in words):
         names = vessel.match_sites([str(word) for word in words], optional=[f"{kind}*"])
         return [
             _describe_site(pose, kind, name, vessel.sites[name], vessel.sites[name], density)
@@ -59,11 +59,15 @@ def find_ballast_sites(
         ]
 
     # the corners of a box displace as its middle does
-    box = np.asarray(where, float)
+    try:
+        box = np.asarray(where, float)
+    except (TypeError, ValueError):
+        box = np.zeros(0)
     is_box = box.shape == (2, 3) and (np.abs(box) <= FARTHEST).all()
     if not is_box or (box[0] > box[1]).any():
+        given = box.tolist() if box.ndim == 2 else describe(where)
         raise ModelError(
-            f"a box for {kind} is {box.tolist()}; "
+            f"a box for {kind} is {given}; "
             f"it must be its lowest and highest corner (2, 3) [m], within {FARTHEST:g} m"
         )
     middle = box.mean(axis=0) - vessel.centre_of_gravity

@@ -9,7 +9,7 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import BuoyancyWarning, ModelError, choices
+from buoyancy_mj.errors import BuoyancyWarning, ModelError, choices, describe
 from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.gravity import find_weighing_masses, read_gravity
@@ -42,8 +42,8 @@ def build_vessel(
         water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
         qpos: coordinates of the model (nq,), or of the root's free joint alone (7,); `model.qpos0`
             if None.
-        body: name of a root body, where several float; the first that has hulls if None. Of a
-            vessel of several trees it may be the root of any.
+        body: name of a root body, where several float; the first that floats freely and has hulls
+            if None. Of a vessel of several trees it may be the root of any.
         selection: which geoms displace water, and as what.
 
     Raises:
@@ -64,6 +64,8 @@ def build_vessel_from_hulls(
     body: str | None = None,
 ) -> Vessel:
     """Build a vessel of a model with hulls at hand; see `build_vessel`."""
+    if not isinstance(water, Water | None):
+        raise ModelError(f"water is {describe(water)}; it must be a Water, as Water(density=1025)")
     gravity = read_gravity(model, required=True)
     bodies, root = _find_vessel(model, [hull.body for hull in hulls], body)
     tether = find_tether(model, bodies)
@@ -145,7 +147,11 @@ class _Masses(NamedTuple):
 def _find_vessel(
     model: mujoco.MjModel, with_hulls: Sequence[int], name: str | None
 ) -> tuple[NDArray[np.int64], int]:
-    """Bodies of a vessel and its root, by the name of one of its roots; of the first if None."""
+    """Bodies of a vessel and its root, by the name of one of its roots.
+
+    If that is None, it is the first that floats freely, as a crane on a pier does not; the first of
+    all where none does.
+    """
     vessels = [
         bodies for bodies in group_floating_bodies(model) if np.isin(with_hulls, bodies).any()
     ]
@@ -155,7 +161,10 @@ def _find_vessel(
         for root in list_roots(model, bodies)
     }
     if name is None:
-        name = body_name(model, int(model.tree_bodyadr[model.body_treeid[with_hulls[0]]]))
+        free = [bodies for bodies in vessels if find_tether(model, bodies) is None]
+        first = (free or vessels)[0]
+        own = [body for body in with_hulls if body in first]
+        name = body_name(model, list_roots(model, np.array(own))[0])
     if name not in roots:
         raise ModelError(f"no body '{name}' floats in this model; {choices(name, roots)}")
     return roots[name]
@@ -167,12 +176,16 @@ def _read_qpos(
     """Coordinates of the model (nq,), and the pose (7,) of the root's free joint if given alone."""
     if qpos is None:
         return model.qpos0.copy(), None
-    values = np.asarray(qpos, float)
+    try:
+        values = np.asarray(qpos, float)
+    except (TypeError, ValueError):
+        values = np.full((), np.nan)
     free = has_free_joint(model, root)
     alone = free and values.shape == (7,)
     if not (alone or values.shape == (model.nq,)) or not np.isfinite(values).all():
+        given = f"has shape {values.shape}" if values.ndim else f"is {describe(qpos)}"
         raise ModelError(
-            f"qpos has shape {values.shape}; it must be {model.nq} finite coordinates of the model"
+            f"qpos {given}; it must be {model.nq} finite coordinates of the model"
             + (", or position and quaternion (7,) of its free joint" if free else "")
         )
     return (model.qpos0.copy(), values) if alone else (values.copy(), None)

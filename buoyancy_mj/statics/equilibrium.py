@@ -87,7 +87,8 @@ def equilibrium(
         start: coordinates of the model (nq,), or of its free joint alone (7,); `model.qpos0` if
             None.
         stable: False for the nearest balance, be it a summit or a saddle.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
@@ -99,6 +100,7 @@ def equilibrium(
         `equilibrium(model, Water(density=1025.0)).hydrostatics.draft`
     """
     vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel.check_free()
     return find_equilibrium(vessel, stable=stable)
 
 
@@ -122,7 +124,8 @@ def equilibria(
         water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
         start: coordinates of the model (nq,), or of its free joint alone (7,), which hold the
             joints, place and heading; `model.qpos0` if None.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
@@ -130,7 +133,9 @@ def equilibria(
         ModelError: nothing is free to float; or see `statics.building.build_vessel`.
         MeshError: a mesh bounds no volume.
     """
-    return find_equilibria(build_vessel(model, water, start, body=body, selection=selection))
+    vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel.check_free()
+    return find_equilibria(vessel)
 
 
 def find_equilibrium(vessel: Vessel, *, stable: bool = True) -> Equilibrium:

@@ -214,7 +214,8 @@ def hydrostatics(
         water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
         qpos: coordinates of the model (nq,), or of the vessel's free joint alone (7,);
             `model.qpos0` if None.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:

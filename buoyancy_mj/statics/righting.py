@@ -107,7 +107,8 @@ def righting_arm(
         start: coordinates of the upright model (nq,), or of its free joint alone (7,);
             `model.qpos0` if None.
         points: globs of the sites to watch, as deck edges and downflooding points.
-        body: name of the root body, where several float; the first that has hulls if None.
+        body: name of the root body, where several float; the first that floats freely and has
+            hulls if None.
         selection: which geoms displace water, and as what.
 
     Raises:
@@ -119,8 +120,12 @@ def righting_arm(
     Example:
         `math.degrees(righting_arm(model).vanishing)`
     """
-    heels = np.radians(np.arange(181.0)) if heel is None else np.unique(np.asarray(heel, float))
-    if not heels.size or not np.isfinite(heels).all() or not math.isfinite(axis):
+    try:
+        heels = np.unique(np.asarray(np.radians(np.arange(181.0)) if heel is None else heel, float))
+        is_finite = bool(heels.size) and bool(np.isfinite(heels).all()) and math.isfinite(axis)
+    except (TypeError, ValueError):
+        is_finite = False
+    if not is_finite:
         raise ModelError("heel and axis must be finite angles [rad], at least one of heel")
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
