@@ -492,6 +492,12 @@ def test_coordinates_that_are_no_numbers_are_refused(start):
         equilibrium(vessels.box(), start=start)
 
 
+def test_what_is_no_selection_is_refused():
+    for ask in (equilibrium, hydrostatics, Buoyancy):
+        with pytest.raises(ModelError, match=r"^selection is 3; it must be Selection\(geoms="):
+            ask(vessels.box(), selection=3)
+
+
 def test_statics_in_what_is_no_water_are_refused():
     with pytest.raises(ModelError, match=r"^water is 3; it must be a Water, as Water\(density"):
         equilibrium(vessels.box(), 3)

@@ -645,3 +645,11 @@ def test_a_scene_raises_the_errors_of_its_water(tmp_path):
     </worldbody></mujoco>"""
     with pytest.raises(MeshError, match="mesh 'm' of geom"):
         Simulation(scene_of(tmp_path, open_box))
+
+
+def test_water_for_what_is_no_spec_is_refused():
+    with pytest.raises(ModelError) as caught:
+        add_water(3)
+    assert str(caught.value) == (
+        "spec is 3; it must be an MjSpec, as mujoco.MjSpec.from_file('my_auv.xml') gives it"
+    )

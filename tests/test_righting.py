@@ -188,3 +188,10 @@ def test_all_trees_of_a_model_have_sites_of_their_own():
         '<site name="downflooding_tug" pos="0 0 .5"/></body></worldbody></mujoco>'
     )
     assert list(righting_arm(model, heel=[0.0, 0.1]).immersed) == ["downflooding_tug"]
+
+
+@pytest.mark.parametrize("points", [3, [1, 2], b"deck"])
+def test_points_that_are_no_globs_are_refused(points):
+    with pytest.raises(ModelError) as caught:
+        righting_arm(vessels.box(), points=points)
+    assert str(caught.value) == f"points is {points!r}; it must be globs of sites, as ['deck*']"

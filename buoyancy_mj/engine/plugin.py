@@ -26,7 +26,7 @@ from buoyancy_mj.engine.instances import PLUGIN, find_instance
 from buoyancy_mj.engine.pickles import pickle_with_water
 from buoyancy_mj.engine.registration import register
 from buoyancy_mj.engine.waters import find_water, remember_settings
-from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError
+from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, describe
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.config import INSTANCE, write_plugin_config
 from buoyancy_mj.settings.settings import Options, Settings, combine_settings
@@ -56,7 +56,7 @@ def add_water(
             selection.
 
     Raises:
-        ModelError: the model has an instance of that name.
+        ModelError: the model has an instance of that name, or `spec` is no MjSpec.
         WaterError, MethodError: a wave or a method that MJCF cannot hold.
         EngineError: this MuJoCo is not as expected inside.
 
@@ -65,6 +65,11 @@ def add_water(
         >>> add_water(spec, Water(waves=RegularWave(amplitude=0.3, frequency=0.5)))
         >>> model = spec.compile()
     """
+    if not isinstance(spec, mujoco.MjSpec):
+        raise ModelError(
+            f"spec is {describe(spec)}; it must be an MjSpec, as "
+            "mujoco.MjSpec.from_file('my_auv.xml') gives it"
+        )
     register()
     if any(plugin.name == instance for plugin in spec.plugins):
         raise ModelError(

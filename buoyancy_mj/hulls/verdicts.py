@@ -62,6 +62,11 @@ def judge_geoms(
             hold for.
     """
     check_model(model)
+    if not isinstance(selection, Selection):
+        raise ModelError(
+            f"selection is {describe(selection)}; "
+            "it must be Selection(geoms=..., hull=..., fill=...)"
+        )
     check_custom_names(model)
 
     # some geoms can never displace water, others do not displace this one

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.integrate import trapezoid
 
-from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices
+from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.building import build_vessel
@@ -129,6 +129,10 @@ def righting_arm(
         raise ModelError("heel and axis must be finite angles [rad], at least one of heel")
     if trim not in TRIMS:
         raise ModelError(f"trim is '{trim}'; {choices(trim, TRIMS)}")
+    if isinstance(points, str):
+        points = [points]
+    if not isinstance(points, Sequence) or not all(isinstance(glob, str) for glob in points):
+        raise ModelError(f"points is {describe(points)}; it must be globs of sites, as ['deck*']")
     vessel = build_vessel(model, water, start, body=body, selection=selection)
     vessel.check_free()
     return compute_righting_arm(vessel, heels, axis=axis, trim_free=trim == "free", points=points)
