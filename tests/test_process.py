@@ -338,6 +338,7 @@ def executed(folder):
     "arguments",
     [
         pytest.param(["--version"], marks=pytest.mark.slow),
+        pytest.param(["list"], marks=pytest.mark.slow),
         pytest.param(
             ["run", "hourglass_drop_still", "--duration", "0.05", "--record", "x.rrd"],
             marks=pytest.mark.slow,
@@ -358,7 +359,9 @@ def executed(folder):
     ids=lambda arguments: arguments[0],
 )
 def test_no_module_comes_from_the_working_folder(hostile, arguments):
-    done = run_python("-m", "buoyancy_mj", *arguments, cwd=hostile)
+    # both spellings of the option
+    module = ["-mbuoyancy_mj"] if arguments == ["list"] else ["-m", "buoyancy_mj"]
+    done = run_python(*module, *arguments, cwd=hostile)
     assert executed(hostile) == []
     assert "Traceback" not in done.stderr
     if "--record" in arguments:
