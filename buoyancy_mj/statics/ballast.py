@@ -155,8 +155,10 @@ def _check_numbers(
 ) -> None:
     """Refuse numbers that make no sense."""
     if (draft is None) == (reserve is None):
+        given = "neither is" if draft is None else "both are"
         raise ModelError(
-            "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral; not both"
+            "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral, "
+            f"and {given} given"
         )
     numbers = [value for value in (draft, reserve, *others) if value is not None]
     if not all(map(math.isfinite, numbers)) or not all(density > 0.0 for density in densities):
