@@ -2,6 +2,7 @@
 
 import collections
 import ctypes
+import weakref
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from typing import Any, NamedTuple
@@ -17,6 +18,9 @@ _ROOM = 1000
 _KNOWN = 100
 """So many letters at its beginning tell a text from others: the engine may cut its end off."""
 
+MOST_FREE = 16
+"""C functions that rest before one is used again: a thread may still be about to leave one."""
+_free: collections.deque[Answering] = collections.deque()
 _INTERRUPTED = "buoyancy_mj: interrupted by a signal"
 """What the engine is told when a signal raised where no Python could catch it."""
 
@@ -59,9 +63,12 @@ class PythonFunction:
             _WORD.from_address(answer).value = text
 
         self._called = _FOUR_WORDS(called)
-        self._answering = Answering(address_of(self._called), ctypes.addressof(_SILENCE))
-        self.address = self._answering.address
+        reused = len(_free) > MOST_FREE
+        answering = _free.popleft() if reused else Answering(ctypes.addressof(_SILENCE))
+        answering.target.value = address_of(self._called)
+        self.address = answering.address
         """Of the C function."""
+        weakref.finalize(self, _free.append, answering).atexit = False
 
 
 def _keep_error(error: BaseException) -> int:
