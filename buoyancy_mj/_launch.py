@@ -21,6 +21,8 @@ def _prepare() -> None:
     _drop_empty_parts()
     # for other processes: glfw starts a Python to look at its library
     os.environ["PYTHONSAFEPATH"] = "1"
+    # and only the viewer needs that, which asks for it itself
+    os.environ.setdefault("MUJOCO_GL", "disable")
 
     # Numba obeys a .numba_config.yaml in the working folder, but not against the environment
     for name in ("NUMBA_CACHE_DIR", "NUMBA_CACHE_LOCATOR_CLASSES"):
@@ -58,7 +60,8 @@ def _is_module() -> bool:
         return False
     pairs = zip(sys.orig_argv, [*sys.orig_argv[1:], ""], strict=True)
     return any(
-        option.startswith("-") and (option + name).partition("m")[2].split(".")[0] == _NAME
+        option.startswith("-")
+        and (option.partition("m")[2] or name * option.endswith("m")).split(".")[0] == _NAME
         for option, name in pairs
     )
 

@@ -221,8 +221,8 @@ def test_without_a_place_the_missing_mass_is_told():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({}, "ballast needs either a draft"),
-        ({"draft": 0.2, "reserve": 0.0}, "ballast needs either a draft"),
+        ({}, "0 for neutral, and neither is given$"),
+        ({"draft": 0.2, "reserve": 0.0}, "0 for neutral, and both are given$"),
         ({"draft": math.nan}, "all must be finite"),
         ({"draft": "x"}, r"bg are \['x', 0.0, 0.0\], .* all must be finite numbers"),
         ({"draft": 0.2, "foam_density": "x"}, "densities 11340.0 and x; all must be finite numb"),

@@ -21,6 +21,7 @@ from buoyancy_mj import (
     RegularWave,
     Selection,
     Water,
+    add_water,
 )
 from buoyancy_mj.engine import callbacks, leases, passes
 from buoyancy_mj.engine.compiled import THREADS
@@ -284,8 +285,56 @@ def test_what_differs_is_named():
         Buoyancy(box()[0]).evaluate(mujoco.MjData(other))
 
 
+@pytest.mark.parametrize("method", ["act", "evaluate"])
+@pytest.mark.parametrize("reset", [False, True])
+def test_data_whose_bodies_are_placed_nowhere_yet_are_refused(method, reset):
+    model, data = box()
+    if reset:
+        mujoco.mj_forward(model, data)
+        mujoco.mj_resetData(model, data)
+    water = Buoyancy(model)
+    message = (
+        r"^these data are new or were reset, and their bodies are placed nowhere yet: "
+        r"call mujoco\.mj_forward\(model, data\) first$"
+    )
+    with pytest.raises(ModelError, match=message):
+        getattr(water, method)(data)
+    mujoco.mj_kinematics(model, data)
+    getattr(water, method)(data)
+
+
+@pytest.mark.parametrize("method", ["act", "evaluate", "loads", "external", "centre_of_mass"])
+def test_what_is_no_data_is_refused(method):
+    water = Buoyancy(box()[0])
+    with pytest.raises(ModelError, match=r"^data are None; give the mujoco\.MjData of this water"):
+        getattr(water, method)(None)
+
+
+def test_a_water_called_by_hand_does_not_double_that_of_its_model():
+    spec = mujoco.MjSpec.from_string(BOX)
+    add_water(spec, Water())
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    water, before = Buoyancy(model), data.qfrc_passive.copy()
+    for call in (lambda: water.act(data), lambda: water(model, data)):
+        with pytest.raises(ModelError, match="brings its own water, as the plugin"):
+            call()
+    assert np.array_equal(data.qfrc_passive, before)
+    assert water.evaluate(data).total.volume == pytest.approx(0.024)
+
+
+@pytest.mark.parametrize("native", ["xfrc_applied", 1])
+def test_an_array_in_the_place_of_native_is_refused(native):
+    water = Buoyancy(box()[0])
+    message = f"^native is {native!r}; possible: True, False, None; the array is through=...$"
+    with pytest.raises(EngineError, match=message), water.installed(native):
+        pass
+
+
 def test_data_of_copies_of_the_model_are_its_own():
     model, data = box()
+    mujoco.mj_forward(model, data)
     water = Buoyancy(model)
     for other in (copy.deepcopy(model), pickle.loads(pickle.dumps(model))):
         theirs = mujoco.MjData(other)

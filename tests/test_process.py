@@ -130,6 +130,41 @@ def test_ctrl_c_inside_a_batch_is_no_failure_of_a_run(interrupt):
         list(batches.run_simulations(simulations, threads=1))
 
 
+INTERRUPTED = """
+import sys
+import mujoco
+from buoyancy_mj import Water, add_water
+from buoyancy_mj.engine.c_functions import find_cause, raise_causes
+
+def interrupt(frame, event, argument):
+    # before its first line, as signals do
+    if frame.f_code.co_name == "called":
+        raise KeyboardInterrupt
+
+spec = mujoco.MjSpec.from_string(
+    "<mujoco><worldbody><body><freejoint/><geom size='1'/></body></worldbody></mujoco>"
+)
+add_water(spec, Water())
+model = spec.compile()
+data = mujoco.MjData(model)
+sys.unraisablehook = lambda raised: None
+sys.setprofile(interrupt)
+try:
+    with raise_causes():
+        mujoco.MjData(model)
+except BaseException as error:
+    sys.setprofile(None)
+    print(type(error).__name__)
+mujoco.mj_step(model, data)
+print(mujoco.MjData(model).time, data.time)
+"""
+
+
+def test_a_signal_before_the_first_line_of_what_the_engine_calls_ends_no_process():
+    done = run_python("-c", INTERRUPTED)
+    assert (done.returncode, done.stdout) == (0, "KeyboardInterrupt\n0.0 0.002\n"), done.stderr
+
+
 def test_an_error_of_the_engine_is_not_mistaken_for_an_older_one_of_python(interrupt):
     model = mujoco.MjModel.from_xml_path(str(catalog.models()["hourglass"]))
     data = mujoco.MjData(model)
@@ -338,6 +373,7 @@ def executed(folder):
     "arguments",
     [
         pytest.param(["--version"], marks=pytest.mark.slow),
+        pytest.param(["list"], marks=pytest.mark.slow),
         pytest.param(
             ["run", "hourglass_drop_still", "--duration", "0.05", "--record", "x.rrd"],
             marks=pytest.mark.slow,
@@ -358,7 +394,9 @@ def executed(folder):
     ids=lambda arguments: arguments[0],
 )
 def test_no_module_comes_from_the_working_folder(hostile, arguments):
-    done = run_python("-m", "buoyancy_mj", *arguments, cwd=hostile)
+    # both spellings of the option
+    module = ["-mbuoyancy_mj"] if arguments == ["list"] else ["-m", "buoyancy_mj"]
+    done = run_python(*module, *arguments, cwd=hostile)
     assert executed(hostile) == []
     assert "Traceback" not in done.stderr
     if "--record" in arguments:

@@ -203,6 +203,18 @@ def test_a_place_that_is_no_folder_is_reported(tmp_path):
         Recording(simulation, tmp_path / "file" / "run.rrd")
 
 
+def test_what_is_no_regular_file_is_not_replaced(tmp_path):
+    simulation = Simulation(read_scene(catalog.scenes()["hourglass_drop_still"], SHORT))
+    path = tmp_path / "run.rrd"
+    os.mkfifo(path)
+    with pytest.raises(RecordingError) as told:
+        Recording(simulation, path)
+    assert str(told.value) == (
+        f"cannot write '{path}': it is no regular file; choose another place (--record)"
+    )
+    assert path.is_fifo()
+
+
 def test_every_load_of_a_sea_is_plotted_by_its_cause(tmp_path):
     path = tmp_path / "run.rrd"
     recorded(path, "auv_sea_state_2", ["duration=0.1"])

@@ -427,6 +427,33 @@ def test_two_sweeps_do_not_write_one_file(name, tmp_path):
     assert [row["status"] for row in going] == ["done"]
 
 
+@pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
+def test_a_sweep_onto_a_link_writes_the_same_file_as_one_onto_its_target(name, tmp_path):
+    (tmp_path / "links").mkdir()
+    (tmp_path / "links" / name).symlink_to(tmp_path / name)
+    going = plan(tmp_path, "mass=20:21:2", name=name).run()
+    next(going)
+    linked = plan(tmp_path / "links", "mass=20:21:2", name=name)
+    with pytest.raises(SweepError, match=r"^another sweep is writing '"):
+        next(linked.run())
+    assert len(list(going)) == 1
+    assert len(list(linked.run())) == 2
+    assert (tmp_path / "links" / name).is_symlink()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["links", name]
+
+
+@pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
+def test_results_onto_what_is_no_file_are_refused(name, tmp_path):
+    out = tmp_path / name
+    os.mkfifo(out)
+    with pytest.raises(SweepError) as told:
+        next(plan(tmp_path, "mass=20:21:2", name=name).run())
+    assert str(told.value) == (
+        f"cannot keep results in '{out}': it is no regular file; give another --out"
+    )
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
 @pytest.mark.parametrize("content", ["precious", "precious\nlines\n", "run,scene\n", "\xff"])
 @pytest.mark.parametrize("name", ["out.csv", "out.partial.csv"])
 def test_a_file_that_is_no_sweep_is_left_alone(name, content, tmp_path):

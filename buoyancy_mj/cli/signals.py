@@ -2,6 +2,7 @@
 
 import _thread
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -43,12 +44,24 @@ def raise_signals() -> Iterator[None]:
         # what runs in the background, or under nohup, is to live on
         if handler is not signal.SIG_IGN:
             signal.signal(number, _stop)
+    hook, sys.unraisablehook = sys.unraisablehook, _ignore_stop
     try:
         yield
         raise_received()
+    except KeyboardInterrupt:
+        # the engine may not know which signal it was
+        raise_received()
+        raise
     finally:
+        sys.unraisablehook = hook
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def _ignore_stop(raised: Any) -> None:
+    """Say nothing of a signal that did not get through, for it is raised later."""
+    if not isinstance(raised.exc_value, Stop):
+        sys.__unraisablehook__(raised)
 
 
 def raise_received() -> None:

@@ -15,6 +15,7 @@ from buoyancy_mj.engine.checks import (
     check_actuation,
     check_applied,
     check_data,
+    check_forwarded,
     check_sleep,
     check_waves,
     warn_of_no_volume,
@@ -192,8 +193,12 @@ class Buoyancy(ReadOnly):
         """Add the forces to `data.qfrc_passive`, once in each pass.
 
         Raises:
-            ModelError: the data are of another model.
+            ModelError: the data are of another model, or their bodies are placed nowhere yet; or
+                the model brings its own water.
         """
+        callbacks.check_single(self.model)
+        check_data(self.model, data)
+        check_forwarded(data)
         self._acting.act(data)
 
     def external(self, data: mujoco.MjData) -> NDArray[np.float64]:
@@ -211,6 +216,7 @@ class Buoyancy(ReadOnly):
         Example:
             `buoyancy.external(data)[body, :3] += [10.0, 0.0, 0.0]`
         """
+        check_data(self.model, data)
         self._acting.leave_bodies(data)
         rows: NDArray[np.float64] = data.xfrc_applied
         return rows
@@ -222,8 +228,11 @@ class Buoyancy(ReadOnly):
             data: of this model.
 
         Raises:
-            ModelError: the data are of another model.
+            ModelError: the data are of another model, or their bodies are placed nowhere yet, as in
+                new data before mj_forward.
         """
+        check_data(self.model, data)
+        check_forwarded(data)
         with self._acting.lock:
             return self._read(self._acting.look(data), data)
 

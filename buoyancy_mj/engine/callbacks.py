@@ -19,7 +19,7 @@ from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.forks import make_lock
 from buoyancy_mj.engine.instances import PLUGIN, plugin_instances
 from buoyancy_mj.engine.leases import LeasedFunction, lease_function
-from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, choices
+from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, choices, describe
 
 PASSIVE, APPLIED = "qfrc_passive", "xfrc_applied"
 """Arrays of mjData through which forces enter."""
@@ -125,16 +125,16 @@ def install(
             carry the water.
         EngineError: `native`, `copies` or `through` is asked for and cannot be.
     """
+    if native is not None and not isinstance(native, bool):
+        raise EngineError(
+            f"native is {describe(native)}; possible: True, False, None; the array is through=..."
+        )
     if through not in WAYS:
         raise EngineError(f"through is '{through}'; {choices(str(through), WAYS)}")
 
     # the model must call it, and call it once
     check_actuation(water.model)
-    if plugin_instances(water.model):
-        raise ModelError(
-            f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would "
-            "double it: leave out the one or the other"
-        )
+    check_single(water.model)
     with _LOCK:
         installed = _find(water)
         if installed is None:
@@ -149,6 +149,19 @@ def install(
             installed.blocks -= 1
             if not installed.blocks:
                 _leave(installed)
+
+
+def check_single(model: mujoco.MjModel) -> None:
+    """Refuse a second water in a model.
+
+    Raises:
+        ModelError: it brings its own.
+    """
+    if plugin_instances(model):
+        raise ModelError(
+            f"this model brings its own water, as the plugin '{PLUGIN}', and a callback would "
+            "double it: leave out the one or the other"
+        )
 
 
 def is_installed(water: ActingWater) -> bool:

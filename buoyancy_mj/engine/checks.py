@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.errors import BuoyancyWarning, ModelError, describe
 from buoyancy_mj.hulls.bodies import find_moving_bodies, group_floating_bodies
 from buoyancy_mj.hulls.gravity import find_weighing_masses
 from buoyancy_mj.hulls.hull import Hull
@@ -83,8 +83,10 @@ def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
     Copies of a model have its signature, and pickled ones have none.
 
     Raises:
-        ModelError: the data are of another model.
+        ModelError: the data are of another model, or no data.
     """
+    if not isinstance(data, mujoco.MjData):
+        raise ModelError(f"data are {describe(data)}; give the mujoco.MjData of this water's model")
     if data.model is model:
         return
     signatures = {model.signature, data.signature} - {0}
@@ -103,6 +105,19 @@ def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
             f"these data are of another model than this water's "
             f"({', '.join(other) or 'of the same sizes'}): make them of it, "
             "mujoco.MjData(buoyancy.model), or make a Buoyancy of their model"
+        )
+
+
+def check_forwarded(data: mujoco.MjData) -> None:
+    """Refuse data without poses: MuJoCo makes and resets data with zeros in place of rotations.
+
+    Raises:
+        ModelError: nothing has placed the bodies yet.
+    """
+    if not data.xquat[-1].any():
+        raise ModelError(
+            "these data are new or were reset, and their bodies are placed nowhere yet: "
+            "call mujoco.mj_forward(model, data) first"
         )
 
 

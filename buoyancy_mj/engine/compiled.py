@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine import layout
-from buoyancy_mj.engine.c_functions import address_of, encode_text, wrap_python
+from buoyancy_mj.engine.c_functions import PythonFunction, encode_text
 from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.kernels.entries import loads, passive
@@ -64,8 +64,11 @@ class CompiledWater:
         self._sizes, self._geoms = (model.nbody, model.nC), model.ngeom
 
         # C functions of Python, and what the engine is told
-        self._submerge = wrap_python(self._submerged)
-        self._measure = wrap_python(lambda *_: measure())
+        exact = isinstance(load_model.packed, PackedHulls)
+        self._submerge = (
+            compile_kernel(loads.submerge) if exact else PythonFunction(self._submerged)
+        )
+        self._measure = PythonFunction(lambda *_: measure())
         self._text = encode_text(
             "gravity is not along -z, and water needs it so: set <option gravity='0 0 -9.81'/>"
         )
@@ -73,18 +76,15 @@ class CompiledWater:
             "a copy of the model has geoms of other sizes than the model of the water: "
             "add_water(spec) makes water that is measured for each"
         )
-        exact = isinstance(load_model.packed, PackedHulls)
         causes = load_model.causes
         links = Links(
             model=model._address,
             signature=model.signature,
             sizes=sum_sizes(np.frombuffer(load_model.sizes, np.int64).copy().reshape(-1, 3)),
-            measure=address_of(self._measure),
+            measure=self._measure.address,
             sizes_text=ctypes.addressof(self._sizes_text),
             act=compile_kernel(passive.act).address,
-            submerge=compile_kernel(loads.submerge).address
-            if exact
-            else address_of(self._submerge),
+            submerge=self._submerge.address,
             augment=compile_kernel(loads.augment).address if "added_mass" in causes else 0,
             error=layout.symbol("mju_error"),
             gravity_text=ctypes.addressof(self._text),

@@ -6,7 +6,7 @@ import functools
 import mujoco
 
 from buoyancy_mj.engine import compiled, layout
-from buoyancy_mj.engine.c_functions import address_of, wrap_python
+from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.engine.model_memory import MODEL_ARRAYS
 from buoyancy_mj.engine.waters import LOCK, find_water, is_making_water
@@ -76,11 +76,11 @@ class _Engine:
     def __init__(self) -> None:
         compiled.require_known_layout()
         layout.verify(["mjData.plugin_data", *(f"mjModel.{name}" for name in MODEL_ARRAYS)])
-        self._resolve = wrap_python(_resolve)
+        self._resolve = PythonFunction(_resolve)
         self._context = Table(
             plugin_hooks.Context(
                 layout.offset("mjData.plugin_data"),
-                address_of(self._resolve),
+                self._resolve.address,
                 layout.symbol("mju_error"),
             )
         )

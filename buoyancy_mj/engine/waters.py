@@ -1,7 +1,9 @@
 """Waters of models that bring their own; models that agree in what it is made of share one."""
 
+import atexit
 import collections
 import contextlib
+import ctypes
 import dataclasses
 import threading
 from collections.abc import Iterator, Mapping
@@ -32,6 +34,8 @@ LOCK = make_lock()
 """Held while a water is looked up, made or attached to data: MuJoCo may ask from any thread."""
 _waters: collections.OrderedDict[bytes, Buoyancy] = collections.OrderedDict()
 """Waters by the fingerprint of their models, the last used last."""
+# data may be deleted after the interpreter has gone, and then write to records of their waters
+atexit.register(ctypes.pythonapi.Py_IncRef, ctypes.py_object(_waters))
 _settings: dict[str, Settings] = {}
 """Settings that this process has put into models, by their texts, the newest last."""
 _thread = threading.local()

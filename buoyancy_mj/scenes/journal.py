@@ -179,6 +179,10 @@ def read_parquet(path: Path) -> Table | None:
 
     if not path.exists():
         return None
+    if not path.is_file():
+        raise SweepError(
+            f"cannot keep results in '{path}': it is no regular file; give another --out"
+        )
     try:
         table = parquet.read_table(path)
     except (OSError, ArrowException) as error:

@@ -77,7 +77,8 @@ class Sweep:
         """
         # parquet cannot grow row by row: a journal stands beside it until all is done
         is_parquet = self.out.suffix == ".parquet"
-        path = self.out.with_suffix(".partial.csv") if is_parquet else self.out
+        table = self.out.resolve() if self.out.is_symlink() else self.out
+        path = table.with_suffix(".partial.csv") if is_parquet else self.out
         journal = Journal(path, self._header, self._digest, self.out if is_parquet else None)
         try:
             self._check_rows(path, journal.rows)

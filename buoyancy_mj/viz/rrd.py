@@ -55,6 +55,10 @@ class RrdFile:
             raise RecordingError(
                 f"cannot write '{path}': it is a folder; choose another place (--record)"
             )
+        if path.exists() and not path.is_file():
+            raise RecordingError(
+                f"cannot write '{path}': it is no regular file; choose another place (--record)"
+            )
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._descriptor, self.partial = open_partial(path)

@@ -36,12 +36,18 @@ class Closure:
             builder.ret_void()
         else:
             builder.ret(returned)
-        self._engine = llvm.create_mcjit_compiler(
-            llvm.parse_assembly(str(module)), _machine().create_target_machine()
-        )
-        self._engine.finalize_object()
+        self._engine = load_module(module)
         self.address = self._engine.get_function_address("closed")
         """Of the function."""
+
+
+def load_module(module: ir.Module) -> Any:
+    """Machine code of a module, by which its functions have addresses; it lives as long as that."""
+    engine = llvm.create_mcjit_compiler(
+        llvm.parse_assembly(str(module)), _machine().create_target_machine()
+    )
+    engine.finalize_object()
+    return engine
 
 
 @functools.cache
