@@ -1,6 +1,7 @@
 """`Buoyancy` in the engine: callbacks, other people's forces, integrators, states."""
 
 import ctypes
+import warnings
 
 import mujoco
 import numpy as np
@@ -580,3 +581,28 @@ def test_waves_are_felt_at_the_time_of_the_data():
         mujoco.mj_forward(model, data)
         volumes.append(float(buoyancy.evaluate(data).total.volume))
     assert volumes[0] > 0.0119 > volumes[1]
+
+
+@pytest.mark.parametrize(
+    ("joint", "told"), [("", True), ("<freejoint/>", False), ('<joint type="slide"/>', False)]
+)
+def test_a_vehicle_without_a_joint_whose_propeller_has_one_is_told(joint, told):
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><worldbody><body name="auv">{joint}
+              <geom type="box" size="0.2 0.1 0.1" mass="8"/>
+              <body name="propeller" pos="-0.2 0 0"><joint axis="1 0 0"/>
+                <geom type="cylinder" size="0.05 0.01" mass="0.1"/></body>
+            </body></worldbody></mujoco>"""
+    )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        Buoyancy(model)
+    told_of = [str(one.message) for one in caught if "freejoint" in str(one.message)]
+    assert told_of == (
+        [
+            "body 'auv' has no joint and stays where it is, and only what hangs on it is in the "
+            "water; give it a <freejoint/> if it shall float"
+        ]
+        if told
+        else []
+    )

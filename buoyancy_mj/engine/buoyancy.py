@@ -18,6 +18,7 @@ from buoyancy_mj.engine.checks import (
     check_forwarded,
     check_sleep,
     check_waves,
+    warn_of_fixed_carrier,
     warn_of_no_volume,
 )
 from buoyancy_mj.engine.compiled import CompiledWater
@@ -94,6 +95,7 @@ class Buoyancy(ReadOnly):
         self._acting = ActingWater(model, self.settings, bodies)
         check_waves(model, self.water, self.hulls)
         warn_of_no_volume(model)
+        warn_of_fixed_carrier(model, self.hulls)
 
         # the bodies
         self.bodies = self._acting.load_model.arrays.bodies

@@ -147,6 +147,24 @@ def warn_of_no_volume(model: mujoco.MjModel) -> None:
         )
 
 
+def warn_of_fixed_carrier(model: mujoco.MjModel, hulls: Sequence[Hull]) -> None:
+    """Name the body without a joint that carries all that is in the water.
+
+    A vehicle whose propeller alone has a joint is one: it was meant to float.
+    """
+    roots = model.tree_bodyadr[np.unique(model.body_treeid[[hull.body for hull in hulls]])]
+    carriers = np.unique(model.body_parentid[roots])
+    solid = model.geom_bodyid[np.isin(model.geom_type, SOLID_TYPES)]
+    fixed = (model.body_treeid[carriers] < 0) & (model.body_mocapid[carriers] < 0) & (carriers > 0)
+    if (fixed & np.isin(carriers, solid)).all():
+        warnings.warn(
+            f"body '{body_name(model, int(carriers[0]))}' has no joint and stays where it is, and "
+            "only what hangs on it is in the water; give it a <freejoint/> if it shall float",
+            BuoyancyWarning,
+            stacklevel=3,
+        )
+
+
 def check_waves(model: mujoco.MjModel, water: Water, hulls: Sequence[Hull]) -> None:
     """Warn of waves that break, and refuse waves in water in which a floating body is aground.
 

@@ -157,10 +157,10 @@ def _check_numbers(
 ) -> None:
     """Refuse numbers that make no sense."""
     if (draft is None) == (reserve is None):
-        given = "neither is" if draft is None else "both are"
+        which = "neither is" if draft is None else "both are"
         raise ModelError(
             "ballast needs either a draft [m], to float, or a reserve [kg], 0 for neutral, "
-            f"and {given} given"
+            f"and {which} given"
         )
     given = [value for value in (draft, reserve, *others) if value is not None]
     are_numbers = all(isinstance(value, numbers.Real) for value in (*given, *densities))
