@@ -632,6 +632,6 @@ def test_a_name_that_cannot_be_printed_is_refused(here, tmp_path, arguments):
 def test_a_recording_whose_name_begins_with_a_dash_gets_its_footer(here, tmp_path):
     result = here("run", STILL, "--duration", "0.05", "--record=-x.rrd")
     assert result.exit_code == 0
-    assert result.stdout.replace("\n", "").endswith("rerun ./-x.rrd")
+    assert result.stdout.replace("\n", "").endswith(" ./-x.rrd")
     assert [path.name for path in tmp_path.iterdir()] == ["-x.rrd"]
     assert b"FOOT" in (tmp_path / "-x.rrd").read_bytes()[-32:]
