@@ -819,3 +819,27 @@ def test_two_waters_over_one_body_are_refused():
         "as by <plugin instance='a'/>, or remove one",
     ):
         mujoco.MjModel.from_xml_string(xml)
+
+
+@pytest.mark.parametrize(
+    ("fill", "lost", "by"),
+    [
+        (["hull=0.5", "hull=0.6"], "hull=0.5", "hull=0.6"),
+        (["hull=0.5", "0.6"], "hull=0.5", "0.6"),
+    ],
+)
+def test_a_fill_that_later_ones_leave_no_geom_is_refused(fill, lost, by):
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><body><freejoint/>
+             <geom name="hull" type="box" size="0.2 0.1 0.1" mass="4"/>
+             <geom name="pod" type="box" size="0.1 0.1 0.1" pos="0 0 -0.5" mass="1"/>
+           </body></worldbody></mujoco>"""
+    )
+    with pytest.raises(ModelError) as caught:
+        Buoyancy(model, selection=Selection(fill=fill))
+    assert str(caught.value) == (
+        f"fill '{lost}' holds for no geom, since '{by}' after it names the same; "
+        "leave one of them out"
+    )
+    general_first = Buoyancy(model, selection=Selection(fill=["0.6", "hull=0.5"]))
+    assert [hull.fill for hull in general_first.hulls] == [0.5, 0.6]

@@ -83,13 +83,16 @@ def parse_shapes(
     """One of `HULL_SHAPES` for those of `geoms` that the words 'PATTERN=convex' name.
 
     Raises:
-        ModelError: an unknown shape, or a pattern of the selection that matches no geom.
+        ModelError: an unknown shape, a pattern of the selection that matches no geom, or a word
+            that later ones leave no geom.
     """
     shapes: dict[int, str] = {}
-    for word, value, matches in _parse_assignments(model, geoms, selection, "hull"):
+    assignments = list(_parse_assignments(model, geoms, selection, "hull"))
+    for word, value, matches in assignments:
         if value not in HULL_SHAPES:
             raise ModelError(f"hull '{word}' asks for '{value}'; {choices(value, HULL_SHAPES)}")
         shapes |= dict.fromkeys(matches, value)
+    _check_used("hull", assignments)
     return shapes
 
 
@@ -99,11 +102,12 @@ def parse_fills(
     """The part of the volume that displaces for those of `geoms` that the words 'PATTERN=0.1' name.
 
     Raises:
-        ModelError: a part that is not above 0 and at most 1, or a pattern of the selection that
-            matches no geom.
+        ModelError: a part that is not above 0 and at most 1, a pattern of the selection that
+            matches no geom, or a word that later ones leave no geom.
     """
     fills: dict[int, float] = {}
-    for word, value, matches in _parse_assignments(model, geoms, selection, "fill"):
+    assignments = list(_parse_assignments(model, geoms, selection, "fill"))
+    for word, value, matches in assignments:
         try:
             part = float(value)
         except ValueError:
@@ -114,6 +118,7 @@ def parse_fills(
                 "as in 'frame=0.1'"
             )
         fills |= dict.fromkeys(matches, part)
+    _check_used("fill", assignments)
     return fills
 
 
@@ -144,3 +149,14 @@ def _parse_assignments(
         for word in choice.words:
             pattern, value = split_assignment(word)
             yield word, value, [g for g in geoms if g in pool.names and pool.matches(g, pattern)]
+
+
+def _check_used(field: str, assignments: Sequence[tuple[str, str, list[int]]]) -> None:
+    """Refuse a word whose geoms all get another value from words after it."""
+    last = {g: (word, value) for word, value, matches in assignments for g in matches}
+    for word, value, matches in assignments:
+        if matches and all(last[g][1] != value for g in matches):
+            raise ModelError(
+                f"{field} '{word}' holds for no geom, since '{last[matches[0]][0]}' after it names "
+                "the same; leave one of them out"
+            )
