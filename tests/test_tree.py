@@ -19,7 +19,7 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.meshes import shapes, tree
-from buoyancy_mj.submersion import exact
+from buoyancy_mj.submersion import exact, wave_limits
 from buoyancy_mj.submersion.hull_set import HullSet
 from tests import naive
 from tests.naive import trimesh_hull
@@ -237,7 +237,7 @@ def test_the_steepest_and_shortest_waves_cost_no_eternity():
     wave = RegularWave(0.0085, wavelength=0.017)
     with pytest.warns(BuoyancyWarning, match="200,000 triangles keep the volume of a hull to"):
         hulls = exact.PackedHulls(HullSet([shapes.box((0.5, 0.4, 0.3))]), Water(waves=wave))
-    assert len(hulls.hulls.faces) < 3 * exact.MOST_TRIANGLES
+    assert len(hulls.hulls.faces) < 3 * wave_limits.MOST_TRIANGLES
     assert np.isfinite(hulls.submerge(np.zeros((1, 3)), np.eye(3).reshape(1, 9), 0.1)[0, 0])
 
 
