@@ -253,7 +253,7 @@ def test_an_open_mesh_is_refused_by_the_name_of_its_geom():
     box = shapes.box((1.0, 0.5, 0.3))
     tub = mesh_model(box.vertices, box.faces[box.area_vectors[:, 2] <= 0.0])
     with pytest.raises(
-        MeshError, match=r"mesh 'tub' of geom 'tub': it is open: 1 hole\(s\) with 4 edges"
+        MeshError, match=r"mesh 'tub' of geom 'tub': it is open: 1 hole with 4 edges"
     ):
         Buoyancy(tub)
 
@@ -289,8 +289,8 @@ def test_the_mend_of_an_open_mesh_names_its_geoms_and_no_others():
     with pytest.raises(MeshError) as refusal:
         find_hulls(model)
     assert str(refusal.value) == (
-        "mesh 'tub' of geom 'shroud 1' and 1 more: it is open: 1 hole(s) with 4 edges "
-        "put 1.06 m^3 (88.65% of its volume) in doubt; close the mesh, take its convex hull "
+        "mesh 'tub' of geom 'shroud 1' and 1 more: it is open: 1 hole with 4 edges "
+        "puts 1.06 m^3 (88.65% of its volume) in doubt; close the mesh, take its convex hull "
         "(--hull 'shroud?*=convex', in Python Selection(hull='shroud?*=convex'), "
         'in MJCF <text name="buoyancy_hull" data="shroud?*=convex"/>), '
         "or leave the geom out (--geoms)"

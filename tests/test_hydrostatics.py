@@ -121,7 +121,7 @@ def test_the_tanker_of_mss_has_the_hydrostatics_that_wamit_gives():
     # C44 9.2149e5 from the centroids of its panels (an exact cut gives 9.25441e5), C55 4.3472e7;
     # about CG (3.93, 0, 2.5), over rho g
     mesh, notices = repair(*vessels.tanker())
-    assert "36 hole(s) with 392 edges" in notices[-1]
+    assert "36 holes with 392 edges" in notices[-1]
     model = vessels.of_mesh(mesh, 1025.0 * 92313.2, (3.93, 0.0, 2.5))
     with pytest.warns(BuoyancyWarning, match="257 m long"):
         found = hydrostatics(model, Water(density=1025.0))

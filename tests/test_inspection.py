@@ -231,7 +231,7 @@ def test_a_refused_mesh_is_named_and_the_rest_goes_on():
     assert tub.mesh is None
     assert keel.mesh is not None
     (problem,) = found.problems
-    assert "mesh 'tub' of geom 'tub': it is open: 1 hole(s) with 4 edges" in problem
+    assert "mesh 'tub' of geom 'tub': it is open: 1 hole with 4 edges" in problem
     assert "close the mesh, take its convex hull (--hull 'tub=convex', in Python" in problem
     (floating,) = found.vessels
     assert floating.total.displacement == pytest.approx(8.0)

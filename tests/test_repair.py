@@ -113,7 +113,7 @@ def test_a_small_hole_is_closed_and_its_doubt_reported():
     mesh, notices = repair(SPHERE.vertices, SPHERE.faces[3:], name="float")
     assert mesh.volume == pytest.approx(SPHERE.volume, rel=1e-3)
     assert notices == [
-        "float: 1 hole(s) with 9 edges put 0.000212 m^3 (0.01% of its volume) in doubt; "
+        "float: 1 hole with 9 edges puts 0.000212 m^3 (0.01% of its volume) in doubt; "
         "they were closed"
     ]
 
@@ -121,7 +121,7 @@ def test_a_small_hole_is_closed_and_its_doubt_reported():
 def test_an_open_box_is_refused_with_the_volume_in_doubt():
     with pytest.raises(
         MeshError,
-        match=r"tub: it is open: 1 hole\(s\) with 4 edges put .* in doubt; "
+        match=r"tub: it is open: 1 hole with 4 edges puts .* in doubt; "
         "close the mesh, or take its convex hull instead",
     ):
         repair(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
@@ -208,7 +208,7 @@ def test_a_diagnosis_counts_what_it_found():
 def test_a_diagnosis_of_what_is_refused_keeps_what_it_found():
     tub = diagnose(BOX.vertices, BOX.faces[BOX.area_vectors[:, 2] <= 0.0], name="tub")
     assert tub.mesh is None
-    assert tub.refusal.startswith("tub: it is open: 1 hole(s) with 4 edges")
+    assert tub.refusal.startswith("tub: it is open: 1 hole with 4 edges")
     assert tub.refusal.endswith("; close the mesh, or take its convex hull instead")
     assert [hole.perimeter for hole in tub.holes] == pytest.approx([6.0])
 

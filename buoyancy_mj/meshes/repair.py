@@ -130,9 +130,11 @@ def _check_holes(report: Diagnosis, volume: float) -> None:
         return
     uncertain = report.uncertain_volume
     edges = sum(hole.edges for hole in report.holes)
+    count = len(report.holes)
+    holes, put = ("hole", "puts") if count == 1 else ("holes", "put")
     finding = (
-        f"{len(report.holes)} hole(s) with {edges} edges "
-        f"put {uncertain:.3g} m^3 ({uncertain / volume:.2%} of its volume) in doubt"
+        f"{count} {holes} with {edges} edges {put} {uncertain:.3g} m^3 "
+        f"({uncertain / volume:.2%} of its volume) in doubt"
     )
     if uncertain > MOST_UNCERTAIN * volume:
         raise MeshError(f"it is open: {finding}; close the mesh, {report.mend}")
