@@ -1,5 +1,7 @@
 """What several tests share."""
 
+import signal
+
 import mujoco
 import pytest
 from hypothesis import HealthCheck, settings
@@ -9,6 +11,14 @@ settings.register_profile(
     "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("any machine")
+
+# what runs in the background, or under nohup, ignores signals, and so would all that it starts
+for number, default in (
+    (signal.SIGINT, signal.default_int_handler),
+    (signal.SIGTERM, signal.SIG_DFL),
+):
+    if signal.getsignal(number) is signal.SIG_IGN:
+        signal.signal(number, default)
 
 CALLBACKS = {
     "mjcb_control": (mujoco.get_mjcb_control, mujoco.set_mjcb_control),
