@@ -155,7 +155,7 @@ def _redundant_lengths(wave: RegularWave) -> tuple[str, ...]:
             copy = RegularWave(**{key: fields[key] for key in fields if key not in others})
         except BuoyancyError:
             continue
-        if np.array_equal(copy.rows, wave.rows):
+        if np.array_equal(copy.rows, wave.rows) and copy.frame == wave.frame:
             return others
     return ()
 
