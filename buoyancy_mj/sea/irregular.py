@@ -2,12 +2,12 @@
 
 import dataclasses
 import math
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import WaterError
-from buoyancy_mj.sea.dispersion import GRAVITY
 
 MOST_COMPONENTS = 10_000
 """Most waves of one sea."""
@@ -31,10 +31,16 @@ class IrregularSea:
     It is infinite for long crests, 10 to 25 for swell, and 2 to 5 for a wind sea."""
     depth: float = math.inf
     """Depth of the water [m]; it shortens the waves and leaves the spectrum as it is."""
-    gravity: float = GRAVITY
-    """Acceleration of gravity in the dispersion relation, g [m/s^2]."""
+    gravity: float | None = None
+    """Acceleration of gravity in the dispersion relation, g [m/s^2].
+
+    By default it is the model's, and 9.81 where there is no model."""
     frame: str = "earth"
     """Who sees the spectrum: "earth", an observer at rest, or "water", one that drifts along."""
+
+    def with_gravity(self, gravity: float) -> Self:
+        """The same sea under this acceleration of gravity [m/s^2], see `sea.gravity`."""
+        return dataclasses.replace(self, gravity=gravity)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)

@@ -4,6 +4,7 @@ import dataclasses
 import functools
 import math
 import random
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,7 @@ from buoyancy_mj.sea.dispersion import (
     wavenumber,
 )
 from buoyancy_mj.sea.distributions import jonswap_moments, jonswap_shape, spreading_angles
+from buoyancy_mj.sea.gravity import or_default, read_stated
 from buoyancy_mj.sea.irregular import (
     MOST_COMPONENTS,
     IrregularSea,
@@ -27,7 +29,6 @@ from buoyancy_mj.sea.ranges import (
     LARGEST,
     SHORTEST,
     SMALLEST,
-    STRONGEST,
     read_depth,
     read_positive,
 )
@@ -80,7 +81,7 @@ class JonswapSea(IrregularSea):
         set_number(self, WaterError, "peak_period", least=SMALLEST, most=LARGEST)
         set_number(self, WaterError, "gamma", least=1.0, most=20.0)
         set_number(self, WaterError, "direction")
-        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
+        object.__setattr__(self, "gravity", read_stated(self.gravity))
         whole = {"components": (1, MOST_COMPONENTS), "seed": (0, 2**63 - 1)}
         for name, (least, most) in whole.items():
             number = read_whole_number(WaterError, name, getattr(self, name), least, most)
@@ -98,7 +99,7 @@ class JonswapSea(IrregularSea):
                 f"significant_height is {self.significant_height} m in water {self.depth} m deep; "
                 "such waves break far outside: make them lower, or the water deeper"
             )
-        k = wavenumber(2.0 * math.pi / self.peak_period, self.depth, self.gravity)
+        k = wavenumber(2.0 * math.pi / self.peak_period, self.depth, or_default(self.gravity))
         shortest = max(SHORTEST, self.significant_height)
         if 2.0 * math.pi / k < shortest:
             raise WaterError(
@@ -135,7 +136,7 @@ class JonswapSea(IrregularSea):
     def rows(self) -> NDArray[np.float64]:
         """The waves in still water as rows (components, 6), see `Wave.rows`."""
         omegas, directions, phases = self._waves
-        k = np.array([wavenumber(omega, self.depth, self.gravity) for omega in omegas])
+        k = np.array([wavenumber(omega, self.depth, or_default(self.gravity)) for omega in omegas])
         return self._rows_of(k, directions, omegas, phases)
 
     def on(self, current: Current) -> Wave:
@@ -151,17 +152,17 @@ class JonswapSea(IrregularSea):
         omegas, directions, phases = self._waves
         peak = 2.0 * math.pi / self.peak_period
         least, greatest = min(peak, omegas.min()), omegas.max()
-        dispersion = Dispersion(current, self.depth, self.gravity, (least, greatest))
+        dispersion = Dispersion(current, self.depth, or_default(self.gravity), (least, greatest))
         k = np.array(list(map(dispersion.wavenumber, omegas, directions)))
         runs = np.isfinite(k)
         blocked = describe_blocked(omegas[~runs], self.components, self.peak_period)
 
         # as the water sees them
         k = k[runs]
-        sigma = intrinsic_frequency(k, self.depth, self.gravity)
+        sigma = intrinsic_frequency(k, self.depth, or_default(self.gravity))
         rows = self._rows_of(k, directions[runs], sigma, phases[runs])
         at_peak = np.array([dispersion.wavenumber(peak, self.direction)])
-        (seen,) = intrinsic_frequency(at_peak, self.depth, self.gravity)
+        (seen,) = intrinsic_frequency(at_peak, self.depth, or_default(self.gravity))
         steep = self._describe_steepness(2.0 * math.pi / float(seen))
         return SeaOnCurrent(rows, ", and ".join(clause for clause in (blocked, steep) if clause))
 
@@ -222,7 +223,7 @@ class JonswapSea(IrregularSea):
             peak_period: Tp as the water sees it [s]; NaN if no such wave runs.
         """
         steepest = float(np.interp(peak_period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
-        limit = steepest * self.gravity * peak_period**2 / (2.0 * math.pi)
+        limit = steepest * or_default(self.gravity) * peak_period**2 / (2.0 * math.pi)
         if not self.significant_height > limit:
             return ""
         return (
@@ -251,17 +252,18 @@ class PiersonMoskowitzSea(IrregularSea):
     """Significant wave height Hs, four times the standard deviation of the elevation [m]."""
     peak_period: float = math.nan
     """Period Tp of the waves with the most energy [s]; by default it follows from the height."""
+    is_developed = False
+    """Whether the peak period was left to follow from the height."""
 
     def __post_init__(self) -> None:
         if isinstance(self.peak_period, float) and math.isnan(self.peak_period):
             height = read_number(
                 WaterError, "significant_height", self.significant_height, above=0.0
             )
-            gravity = read_number(
-                WaterError, "gravity", self.gravity, least=SMALLEST, most=STRONGEST
-            )
+            gravity = or_default(read_stated(self.gravity))
             omega = (16.0 * ALPHA / 5.0) ** 0.25 * math.sqrt(gravity / height)
             object.__setattr__(self, "peak_period", 2.0 * math.pi / omega)
+            object.__setattr__(self, "is_developed", True)
 
         # this checks all the rest
         _ = self.as_jonswap
@@ -276,6 +278,14 @@ class PiersonMoskowitzSea(IrregularSea):
     def rows(self) -> NDArray[np.float64]:
         """The waves in still water as rows (components, 6), see `Wave.rows`."""
         return self.as_jonswap.rows
+
+    def with_gravity(self, gravity: float) -> Self:
+        """The same sea under this acceleration of gravity [m/s^2], see `sea.gravity`.
+
+        A peak period that follows from the height does so again.
+        """
+        peak_period = math.nan if self.is_developed else self.peak_period
+        return dataclasses.replace(self, gravity=gravity, peak_period=peak_period)
 
     def on(self, current: Current) -> Wave:
         """The sea on a current, as its water sees it, see `JonswapSea.on`."""

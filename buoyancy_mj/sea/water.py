@@ -19,6 +19,7 @@ from buoyancy_mj.sea.currents import (
 )
 from buoyancy_mj.sea.dispersion import GRAVITY
 from buoyancy_mj.sea.doppler import add_doppler, describe_change
+from buoyancy_mj.sea.gravity import take_gravity
 from buoyancy_mj.sea.irregular import IrregularSea
 from buoyancy_mj.sea.ranges import LARGEST
 from buoyancy_mj.sea.waves import Wave, depends_on_current
@@ -149,6 +150,20 @@ class Water:
         if isinstance(self.current, CurrentSeries):
             clauses.append(describe_change(self.current, self._rows))
         return tuple(clause for clause in clauses if clause)
+
+    def with_gravity(self, gravity: float) -> "Water":
+        """The water of a model: waves that state no gravity take the model's.
+
+        Args:
+            gravity: of the model [m/s^2]. Where it is 0, waves keep theirs, 9.81 by default.
+
+        Raises:
+            WaterError: a wave states another gravity, or there is no such wave under this one.
+        """
+        waves = tuple(take_gravity(wave, gravity) for wave in self._waves)
+        if all(new is old for new, old in zip(waves, self._waves, strict=True)):
+            return self
+        return dataclasses.replace(self, waves=waves)
 
     def elevation(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
         """Height of the surface (...) [m], world frame.

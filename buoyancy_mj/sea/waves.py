@@ -2,7 +2,7 @@
 
 import dataclasses
 import math
-from typing import Protocol, TypeGuard
+from typing import Any, Protocol, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,19 +10,21 @@ from numpy.typing import NDArray
 from buoyancy_mj.errors import WaterError
 from buoyancy_mj.sea.currents import Current, is_still
 from buoyancy_mj.sea.dispersion import (
-    GRAVITY,
     Dispersion,
     describe_limit,
     read_frame,
     wavenumber,
 )
-from buoyancy_mj.sea.ranges import LARGEST, SHORTEST, SMALLEST, STRONGEST, read_depth
+from buoyancy_mj.sea.gravity import or_default, read_stated
+from buoyancy_mj.sea.ranges import LARGEST, SHORTEST, SMALLEST, read_depth
 from buoyancy_mj.values import read_number, set_number
 
 STEEPEST = 0.142
 """Height over wavelength above which regular waves break in deep water (Miche 1944).
 
 In water of depth h the limit is this times tanh(k h)."""
+LENGTHS = ("frequency", "period", "wavelength")
+"""Fields of a regular wave of which any one gives the others."""
 FASTEST = 100.0
 """Greatest frequency of a level that goes up and down [Hz]; timesteps resolve no more."""
 
@@ -101,12 +103,16 @@ class RegularWave:
     """Phase at the origin at time 0 [rad]; 0 is a crest."""
     depth: float = dataclasses.field(default=math.inf, kw_only=True)
     """Depth of the water, h [m]."""
-    gravity: float = dataclasses.field(default=GRAVITY, kw_only=True)
-    """Acceleration of gravity in the dispersion relation, g [m/s^2]."""
+    gravity: float | None = dataclasses.field(default=None, kw_only=True)
+    """Acceleration of gravity in the dispersion relation, g [m/s^2].
+
+    By default it is the model's, and 9.81 where there is no model."""
     frame: str = dataclasses.field(default="earth", kw_only=True)
     """Who sees the frequency: "earth", an observer at rest, or "water", one that drifts along.
 
     It is "water" wherever the wavelength is given, for that is the same to both."""
+    given = "frequency"
+    """Which of frequency, period and wavelength was given; under another gravity it stays."""
 
     def __post_init__(self) -> None:
         # values in their ranges
@@ -114,7 +120,7 @@ class RegularWave:
         set_number(self, WaterError, "amplitude", least=0.0, most=LARGEST)
         set_number(self, WaterError, "direction")
         set_number(self, WaterError, "phase")
-        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
+        object.__setattr__(self, "gravity", read_stated(self.gravity))
         object.__setattr__(self, "depth", read_depth(self.depth))
         if self.amplitude > self.depth:
             raise WaterError(
@@ -123,7 +129,7 @@ class RegularWave:
             )
 
         # one of three; the other two follow
-        three = {name: getattr(self, name) for name in ("frequency", "period", "wavelength")}
+        three = {name: getattr(self, name) for name in LENGTHS}
         known = {name: value for name, value in three.items() if not _is_default(value)}
         if len(known) != 1:
             raise WaterError(
@@ -138,17 +144,19 @@ class RegularWave:
     def _complete(self, name: str, value: float) -> None:
         """Set the two of frequency, period and wavelength that follow from the third."""
         object.__setattr__(self, name, value)
+        object.__setattr__(self, "given", name)
+        gravity = or_default(self.gravity)
         if name == "wavelength":
             object.__setattr__(self, "frame", "water")
             k = 2.0 * math.pi / value
-            frequency = math.sqrt(self.gravity * k * math.tanh(k * self.depth)) / (2.0 * math.pi)
+            frequency = math.sqrt(gravity * k * math.tanh(k * self.depth)) / (2.0 * math.pi)
         else:
             frequency = value if name == "frequency" else 1.0 / value
         object.__setattr__(self, "frequency", frequency)
         if name != "period":
             object.__setattr__(self, "period", 1.0 / frequency)
         if name != "wavelength":
-            k = wavenumber(2.0 * math.pi * frequency, self.depth, self.gravity)
+            k = wavenumber(2.0 * math.pi * frequency, self.depth, gravity)
             object.__setattr__(self, "wavelength", 2.0 * math.pi / k)
 
     def _check_length(self, name: str, value: float) -> None:
@@ -172,6 +180,17 @@ class RegularWave:
         kx, ky = k * math.cos(self.direction), k * math.sin(self.direction)
         return np.array([[self.amplitude, kx, ky, omega, self.phase, self.depth]])
 
+    def with_gravity(self, gravity: float) -> "RegularWave":
+        """The same wave under this acceleration of gravity [m/s^2], see `sea.gravity`.
+
+        Of frequency, period and wavelength the one that was given stays.
+
+        Raises:
+            WaterError: it would be too short, or higher than long.
+        """
+        others: dict[str, Any] = {name: math.nan for name in LENGTHS if name != self.given}
+        return dataclasses.replace(self, gravity=gravity, **others)
+
     def on(self, current: Current) -> "RegularWave":
         """The wave on a current, as its water sees it, see `CurrentWave.on`.
 
@@ -181,7 +200,7 @@ class RegularWave:
         if self.frame == "water" or is_still(current):
             return self
         omega = 2.0 * math.pi * self.frequency
-        dispersion = Dispersion(current, self.depth, self.gravity, (omega, omega))
+        dispersion = Dispersion(current, self.depth, or_default(self.gravity), (omega, omega))
         k = dispersion.wavenumber(omega, self.direction)
         if math.isnan(k):
             limit = describe_limit(dispersion.highest_frequency(self.direction))
