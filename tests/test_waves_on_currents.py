@@ -205,10 +205,14 @@ def test_a_blocked_wave_is_refused_with_the_shortest_period_that_runs():
         Water(waves=RegularWave(0.05, period=2.0, direction=math.pi), current=(1.0, 0.0, 0.0))
     with pytest.raises(
         WaterError,
-        match=r"a wave with a period of 2\.6 s becomes too short on the current: a wave 4 m high "
+        match=r"a wave with a period of 2\.6 s cannot run on the current: a wave 4 m high "
         r"and 3\.32 m long is higher than long",
     ):
         Water(waves=RegularWave(2.0, period=2.6), current=(-1.0, 0.0, 0.0))
+    # in a scene too
+    water = {"current": [-1.0, 0.0, 0.0], "waves": [{"amplitude": 0.05, "period": 2.0}]}
+    with pytest.raises(SceneError, match=r"water: a wave with a period of 2 s cannot run against"):
+        scene_from_table({"title": "t", "vehicle": "hourglass", "water": water})
     # where it runs with the current, or is the water's, there it is
     Water(waves=RegularWave(0.05, period=2.0), current=(1.0, 0.0, 0.0))
     Water(waves=RegularWave(0.05, period=2.0, frame="water"), current=(-1.0, 0.0, 0.0))

@@ -76,7 +76,7 @@ def _wavenumber_in_still_water(omega: float, depth: float, gravity: float) -> fl
     shallow = math.sqrt(deep * depth)
     low, high = max(deep * depth, shallow), deep * depth + shallow
     kh = brentq(
-        lambda q: q * math.tanh(q) - deep * depth, low * 0.999, high, xtol=1e-15, rtol=1e-14
+        lambda q: q * math.tanh(q) - deep * depth, low * 0.999, high, xtol=1e-300, rtol=1e-14
     )
     return float(kh) / depth
 

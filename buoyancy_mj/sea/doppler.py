@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, OMEGA, SIGMA
-from buoyancy_mj.sea.currents import Current, CurrentSeries, effective_current
+from buoyancy_mj.sea.currents import Current, CurrentSeries, effective_current, is_still
 
 MOST_CHANGE = 0.05
 """Most that a current by time may leave its mean without a warning, over the speed of a wave."""
@@ -20,11 +20,14 @@ def add_doppler(
         current: that it runs on.
         at_rest: whether the frequency of the rows is omega; otherwise it is sigma.
     """
-    k = np.hypot(rows[:, KX], rows[:, KY])
+    both = np.column_stack([rows, rows[:, OMEGA]])
+    if is_still(current):
+        return both
+
     # a level that goes up and down has no length, and no shift
+    k = np.hypot(rows[:, KX], rows[:, KY])
     felt = effective_current(current, np.where(k > 0.0, k, 1.0), rows[:, DEPTH])
     shift = rows[:, KX] * felt[:, 0] + rows[:, KY] * felt[:, 1]
-    both = np.column_stack([rows, rows[:, OMEGA]])
     if at_rest:
         both[:, SIGMA] -= shift
     else:

@@ -12,6 +12,7 @@ from buoyancy_mj.sea.currents import Current, is_still
 from buoyancy_mj.sea.dispersion import (
     Dispersion,
     describe_limit,
+    intrinsic_frequency,
     read_frame,
     wavenumber,
 )
@@ -195,7 +196,7 @@ class RegularWave:
         """The wave on a current, as its water sees it, see `CurrentWave.on`.
 
         Raises:
-            WaterError: the current blocks the wave, or makes it too short.
+            WaterError: the current blocks the wave, or makes it shorter than waves can be.
         """
         if self.frame == "water" or is_still(current):
             return self
@@ -209,13 +210,15 @@ class RegularWave:
                 f"blocks {limit}; give it a longer period or a weaker current, or say frame = "
                 "'water' if the period is what the water sees"
             )
-        length = 2.0 * math.pi / k
+
+        # by the frequency that the water sees, from which its length follows as in still water
+        (sigma,) = intrinsic_frequency(np.array([k]), self.depth, self.gravity)
+        seen = {"frequency": float(sigma) / (2.0 * math.pi), "period": math.nan}
         try:
-            return dataclasses.replace(self, wavelength=length, frequency=math.nan, period=math.nan)
+            return dataclasses.replace(self, **seen, wavelength=math.nan, frame="water")
         except WaterError as error:
             raise WaterError(
-                f"a wave with a period of {self.period:g} s becomes too short on the current: "
-                f"{error}"
+                f"a wave with a period of {self.period:g} s cannot run on the current: {error}"
             ) from error
 
     @property
