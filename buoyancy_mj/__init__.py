@@ -48,12 +48,12 @@ from buoyancy_mj.scenes.summary import Summary as Summary
 from buoyancy_mj.scenes.summary import VehicleSummary as VehicleSummary
 from buoyancy_mj.sea.currents import CurrentProfile as CurrentProfile
 from buoyancy_mj.sea.currents import CurrentSeries as CurrentSeries
+from buoyancy_mj.sea.dispersion import wavenumber as wavenumber
 from buoyancy_mj.sea.spectra import JonswapSea as JonswapSea
 from buoyancy_mj.sea.spectra import PiersonMoskowitzSea as PiersonMoskowitzSea
 from buoyancy_mj.sea.water import Water as Water
 from buoyancy_mj.sea.waves import LevelOscillation as LevelOscillation
 from buoyancy_mj.sea.waves import RegularWave as RegularWave
-from buoyancy_mj.sea.waves import wavenumber as wavenumber
 from buoyancy_mj.settings.settings import Settings as Settings
 from buoyancy_mj.statics.ballast import Ballast as Ballast
 from buoyancy_mj.statics.ballast import ballast as ballast

@@ -23,7 +23,7 @@ def sliced(mesh, position, rotation, level=0.0):
 
 def elevation(rows, x, y, time):
     """Sum of cosines, one by one."""
-    return sum(a * np.cos(kx * x + ky * y - w * time + phase) for a, kx, ky, w, phase, _ in rows)
+    return sum(a * np.cos(kx * x + ky * y - w * time + phase) for a, kx, ky, w, phase, *_ in rows)
 
 
 def columns(half_sizes, position, water, time, cells=400):

@@ -300,18 +300,15 @@ def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
     mass = 1000 * 4 / 3 * math.pi * radius**3
     # of small amplitude, since it drifts by its square (Stokes)
     wave = RegularWave(0.002, wavelength=6.0)
-    k, omega = 2 * math.pi / 6.0, float(wave.rows[0, 3])
+    k, omega, water = 2 * math.pi / 6.0, float(wave.rows[0, 3]), Water(waves=wave)
     model = mujoco.MjModel.from_xml_string(
         f"""<mujoco><option timestep="0.01" integrator="RK4"/>
         <worldbody><body name="b" pos="0 0 -1"><freejoint/>
         <geom type="sphere" size="{radius}" mass="{mass}"/></body></worldbody></mujoco>"""
     )
     data = mujoco.MjData(model)
-    velocity = np.zeros(3)
-    add_velocity(wave.rows, 0.0, 0.0, -1.0, 0.0, velocity)
-    data.qvel[:3] = velocity
+    data.qvel[:3] = water.velocity([0.0, 0.0, -1.0], 0.0)
     orbit = 0.002 * math.exp(-k * 1.0)
-    water = Water(waves=wave)
     places = []
     with Buoyancy(
         model, water, damping=None, pressure="froude-krylov", added_mass="estimate"
@@ -477,7 +474,7 @@ def test_a_body_whose_inertia_is_kept_as_a_diagonal_takes_what_fits():
     with pytest.raises(
         ModelError,
         match=r"MuJoCo keeps the inertia of body 'hull' as a diagonal, "
-        r".* move one of them by a hair",
+        r".* write <body simple='false'>",
     ):
         Buoyancy(model, added_mass={"hull": DIAGONAL})
     assert (

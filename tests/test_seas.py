@@ -177,8 +177,10 @@ def test_seas_and_swell_add_up():
 
 
 @pytest.mark.parametrize("depth", [math.inf, 4.0])
-def test_water_is_kept_does_not_turn_and_moves_with_its_surface(depth):
-    water, h = Water(waves=JonswapSea(0.4, 3.0, spreading=5.0, depth=depth)), 1e-4
+@pytest.mark.parametrize("current", [(0.0, 0.0, 0.0), (0.6, -0.3, 0.0)])
+def test_water_is_kept_does_not_turn_and_moves_with_its_surface(depth, current):
+    sea = JonswapSea(0.4, 3.0, spreading=5.0, depth=depth)
+    water, h = Water(waves=sea, current=current), 1e-4
     for p in np.array([[1.0, 2.0, -0.3], [-3.0, 0.5, -2.0]]):
         gradient = np.array(
             [
@@ -188,9 +190,13 @@ def test_water_is_kept_does_not_turn_and_moves_with_its_surface(depth):
         )
         assert np.trace(gradient) == pytest.approx(0.0, abs=1e-7)
         assert gradient == pytest.approx(gradient.T, abs=1e-7)
-        rate = (water.velocity(p, 0.2 + h) - water.velocity(p, 0.2 - h)) / (2 * h)
+        # as the water sees it, which drifts with the current
+        d = h * np.array(water.current)
+        rate = (water.velocity(p + d, 0.2 + h) - water.velocity(p - d, 0.2 - h)) / (2 * h)
         assert water.acceleration(p, 0.2) == pytest.approx(rate, abs=1e-6)
-        rise = (water.elevation(*p[:2], 0.2 + h) - water.elevation(*p[:2], 0.2 - h)) / (2 * h)
+        ahead = water.elevation(p[0] + d[0], p[1] + d[1], 0.2 + h)
+        behind = water.elevation(p[0] - d[0], p[1] - d[1], 0.2 - h)
+        rise = (ahead - behind) / (2 * h)
         assert water.velocity([*p[:2], 0.0], 0.2)[2] == pytest.approx(float(rise), abs=1e-7)
         around = [
             water.elevation(p[0] + h * a, p[1] + h * b, 0.2)
@@ -201,15 +207,14 @@ def test_water_is_kept_does_not_turn_and_moves_with_its_surface(depth):
 
 
 @pytest.mark.parametrize("depth", [math.inf, 4.0])
-def test_pressure_and_acceleration_obey_eulers_equation_to_first_order(depth):
+@pytest.mark.parametrize("current", [(0.0, 0.0, 0.0), (0.6, -0.3, 0.0), (-0.15, 0.0, 0.0)])
+@pytest.mark.parametrize("frame", ["earth", "water"])
+def test_pressure_and_acceleration_obey_eulers_equation_to_first_order(depth, current, frame):
     # rho a = -grad p - rho g z; the stretching, and the square of the velocity, are of second order
     worst = []
     for height in (1e-3, 2e-3):
-        water, h, density = (
-            Water(waves=JonswapSea(height, 3.0, spreading=5.0, depth=depth)),
-            1e-3,
-            1000.0,
-        )
+        sea = JonswapSea(height, 3.0, spreading=5.0, depth=depth, frame=frame)
+        water, h, density = Water(waves=sea, current=current), 1e-3, 1000.0
         errors = []
         for p in np.array([[1.0, 2.0, -0.2], [-3.0, 0.5, -1.0], [0.3, 4.0, -2.5]]):
             slope = [
@@ -250,7 +255,7 @@ def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
     rows = Water(
         waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]
     ).rows
-    sea = np.empty(local.NEAR + 6 * len(rows))
+    sea = np.empty(local.NEAR + local.WAVE * len(rows))
     eta = naive.elevation(rows, 1.3, -2.0, 0.7)
     local.gather(rows, 1.3, -2.0, z, eta, 0.7, radius, *local.plan(rows, radius), True, sea)
     # the most of the waves are in them
@@ -327,7 +332,7 @@ def test_seas_stand_in_scenes_and_in_models():
     assert scene.water.waves == (JonswapSea(0.5, 4.0, seed=5, spreading=8.0),)
     for sea in SEAS:
         texts = write_plugin_config(Settings(water=Water(waves=sea)))
-        assert np.array_equal(parse_plugin_config(texts, "here").water.rows, sea.rows)
+        assert np.array_equal(parse_plugin_config(texts, "here").water.rows[:, :6], sea.rows)
 
 
 @pytest.mark.parametrize(

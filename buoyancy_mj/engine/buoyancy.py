@@ -1,6 +1,7 @@
 """`Buoyancy`: the water that acts on the bodies of one MuJoCo model."""
 
 import contextlib
+import dataclasses
 import functools
 from collections.abc import Iterator, Sequence
 from typing import Any, Unpack
@@ -58,6 +59,7 @@ class Buoyancy(ReadOnly):
             selection.
 
     Raises:
+        WaterError: a wave that states another gravity than the model's.
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips an
             `mjcb_control`), sleep enabled, no geom that displaces water, a body without mass.
         MeshError: a mesh that bounds no volume.
@@ -80,19 +82,22 @@ class Buoyancy(ReadOnly):
         self.model = model
         """The model."""
         self.settings = combine_settings(water, options)
-        """All options."""
-        self.water = self.settings.water
-        """The sea."""
+        """All options, as they were given."""
 
         # what water asks of a model
         check_model(model)
         check_actuation(model)
         check_sleep(model)
-        read_gravity(model)
+        gravity = read_gravity(model)
+
+        # the sea, whose waves run under the model's gravity
+        self.water = self.settings.water.with_gravity(gravity)
+        """The sea, with waves under the model's gravity."""
+        settings = dataclasses.replace(self.settings, water=self.water)
 
         # the hulls, and what acts on them
         self._chosen = bodies
-        self._acting = ActingWater(model, self.settings, bodies)
+        self._acting = ActingWater(model, settings, bodies)
         check_waves(model, self.water, self.hulls)
         warn_of_no_volume(model)
         warn_of_fixed_carrier(model, self.hulls)

@@ -27,6 +27,7 @@ from buoyancy_mj.engine.pickles import pickle_with_water
 from buoyancy_mj.engine.registration import register
 from buoyancy_mj.engine.waters import find_water, remember_settings
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, describe
+from buoyancy_mj.loads.full_inertia import make_room
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.config import INSTANCE, write_plugin_config
 from buoyancy_mj.settings.settings import Options, Settings, combine_settings
@@ -42,7 +43,8 @@ def add_water(
     """Put water into a model, so that it floats wherever MuJoCo steps it.
 
     The model compiled from `spec` has the water, and so has the MJCF saved from it. Where `spec` is
-    attached to another model, its bodies keep their water, and the others stay without.
+    attached to another model, its bodies keep their water, and the others stay without. Where
+    bodies may get added mass, MuJoCo keeps their whole inertia (`<body simple="false">`).
 
     Args:
         spec: the model, with its bodies: those that it gets later are in this water too, but do not
@@ -79,6 +81,7 @@ def add_water(
     settings = combine_settings(water, options)
     config = write_plugin_config(settings)
     remember_settings(config, settings)
+    make_room(spec, settings.added_mass)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
     if any(body.plugin.active and body.plugin.name == instance for body in spec.bodies):

@@ -49,7 +49,7 @@ def submerge_hulls(
     hulls,  # `hulls.Hulls`
     geoms,  # `multibody.Geoms`
     level,  # of the water [m]
-    waves,  # (w, 6)
+    waves,  # (w, 7)
     time,  # [s]
     scratch,  # `scratch.CutScratch`
     out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area

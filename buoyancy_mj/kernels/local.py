@@ -59,7 +59,7 @@ PRESSURE = SURFACE + FLAT
 """First column of the polynomial of the pressure."""
 NEAR = PRESSURE + SOLID
 """First column of the near waves, which have `WAVE` numbers each, as in `kernels.waves`."""
-WAVE = 6
+WAVE = 7
 HEAD, ETA, BELOW, ROOM = 3, 4, 5, 9
 """Rows of a room for many places, after x and y from the middle and z from the still level: the
 head or the elevation there; scratch; and how many rows there are."""
@@ -131,8 +131,8 @@ def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, near):
     The degree and the limit are the `plan` of a hull there.
 
     Waves that the polynomials do not hold are copied as they are; all others go into that of the
-    surface, and with `dynamic` into that of the pressure. The row has NEAR + 6 numbers for each
-    wave; `eta` is the elevation over the place.
+    surface, and with `dynamic` into that of the pressure. The row has NEAR numbers, and `WAVE` for
+    each wave; `eta` is the elevation over the place.
     """
     many = waves.shape[0]
     near[:NEAR] = 0.0

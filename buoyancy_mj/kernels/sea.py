@@ -13,7 +13,7 @@ linear waves."""
 class Sea(NamedTuple):
     """One sea."""
 
-    waves: Annotated[Doubles, ("w", 6)]
+    waves: Annotated[Doubles, ("w", 7)]
     """The waves, see `kernels.waves`."""
     current: Annotated[Doubles, ("c", 5)]
     """The current, see `kernels.currents`."""

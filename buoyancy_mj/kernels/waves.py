@@ -11,9 +11,10 @@ from buoyancy_mj.kernels import series
 from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.vectors import triple
 
-AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH = range(6)
-"""Columns of a row: amplitude [m], wave vector (2) [rad/m], angular frequency [rad/s], phase at the
-origin at time 0 [rad], and the depth of the water [m]."""
+AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH, SIGMA = range(7)
+"""Columns of a row: amplitude [m], wave vector (2) [rad/m], angular frequency at a fixed place
+[rad/s], phase at the origin at time 0 [rad], the depth of the water [m], and the angular frequency
+as the water sees it, which drifts with the current [rad/s]."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -125,44 +126,44 @@ def add_velocity(waves, x, y, z, time, out):
     z = min(z, 0.0)
     for i in range(waves.shape[0]):
         amplitude, kx, ky = triple(waves, i, AMPLITUDE)
-        omega, angle = waves[i, OMEGA], phase_at(waves, i, x, y, time)
+        sigma, angle = waves[i, SIGMA], phase_at(waves, i, x, y, time)
         k = math.hypot(kx, ky)
         if k == 0.0:
-            out[2] += amplitude * omega * math.sin(angle)
+            out[2] += amplitude * sigma * math.sin(angle)
             continue
         depth = waves[i, DEPTH]
         height = max(z, -depth)
         # e^{kz} (1 +- e^{-2k(z+h)}) / (1 - e^{-2kh}) is cosh and sinh over sinh without overflow
         decay = math.exp(k * height) / (-math.expm1(-2.0 * k * depth))
         echo = math.exp(-2.0 * k * (height + depth))
-        horizontal = amplitude * omega * decay * (1.0 + echo) * math.cos(angle)
+        horizontal = amplitude * sigma * decay * (1.0 + echo) * math.cos(angle)
         out[0] += horizontal * kx / k
         out[1] += horizontal * ky / k
-        out[2] += amplitude * omega * decay * (1.0 - echo) * math.sin(angle)
+        out[2] += amplitude * sigma * decay * (1.0 - echo) * math.sin(angle)
 
 
 @njit(cache=True, error_model="numpy")
 def add_acceleration(waves, x, y, z, time, out):
     """Add the rows' orbital acceleration [m/s^2], at one place, to `out` (3,).
 
-    It is the rate of `add_velocity` in time.
+    It is the rate of `add_velocity` in time for who drifts with the current, as the water does.
     """
     z = min(z, 0.0)
     for i in range(waves.shape[0]):
         amplitude, kx, ky = triple(waves, i, AMPLITUDE)
-        omega, angle = waves[i, OMEGA], phase_at(waves, i, x, y, time)
+        sigma, angle = waves[i, SIGMA], phase_at(waves, i, x, y, time)
         k = math.hypot(kx, ky)
         if k == 0.0:
-            out[2] -= amplitude * omega * omega * math.cos(angle)
+            out[2] -= amplitude * sigma * sigma * math.cos(angle)
             continue
         depth = waves[i, DEPTH]
         height = max(z, -depth)
         decay = math.exp(k * height) / (-math.expm1(-2.0 * k * depth))
         echo = math.exp(-2.0 * k * (height + depth))
-        horizontal = amplitude * omega * omega * decay * (1.0 + echo) * math.sin(angle)
+        horizontal = amplitude * sigma * sigma * decay * (1.0 + echo) * math.sin(angle)
         out[0] += horizontal * kx / k
         out[1] += horizontal * ky / k
-        out[2] -= amplitude * omega * omega * decay * (1.0 - echo) * math.cos(angle)
+        out[2] -= amplitude * sigma * sigma * decay * (1.0 - echo) * math.cos(angle)
 
 
 # at many points, for Python
@@ -214,7 +215,7 @@ def velocities(waves, current, points, level, time, out):
 def accelerations(waves, current, points, level, time, out):
     """Write the acceleration of current and waves [m/s^2] at points (n, 3) to `out` (n, 3).
 
-    The points stay in place.
+    It is that of the water, which drifts with the current.
     """
     for i in range(points.shape[0]):
         x, y, z = triple(points, i, 0)

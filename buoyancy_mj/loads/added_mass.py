@@ -13,11 +13,10 @@ from buoyancy_mj.hulls.custom import find_body, read_numerics
 from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.inertia import AddedMass
+from buoyancy_mj.loads.full_inertia import QUANTITY
 from buoyancy_mj.loads.matrices import move_to_origin, parse_matrix
 from buoyancy_mj.meshes.mesh import TriMesh
 
-QUANTITY = "added_mass"
-"""Quantity of the model's numerics 'added_mass:BODY'."""
 SOURCES = ("model", "estimate", "none")
 """Where added mass comes from: the model's numerics; an estimate for bodies without; nowhere."""
 
@@ -160,15 +159,24 @@ def _check_fit(model: mujoco.MjModel, body: int, matrix: NDArray[np.float64]) ->
     """Refuse added mass that does not fit into the diagonal that MuJoCo keeps of some bodies."""
     first = int(model.body_dofadr[body])
     count = int(model.body_dofnum[body])
-    if count != 6 or (model.M_rownnz[first : first + 6] > 1).any():
+    if count < 2 or (model.M_rownnz[first : first + count] > 1).any():
         return
-    diagonal = np.diag(matrix)
-    alike = np.ptp(diagonal[:3]) <= 1e-9 * diagonal[0]
-    if not alike or np.abs(matrix - np.diag(diagonal)).max() > 1e-9 * np.abs(matrix).max():
+
+    # what meets the joints: a body that slides keeps its axes, and one on a ball its origin
+    types = model.jnt_type[model.dof_jntid[first : first + count]]
+    slides = types == mujoco.mjtJoint.mjJNT_SLIDE
+    if slides.all():
+        block, alike = matrix[:3, :3], True
+    elif (types == mujoco.mjtJoint.mjJNT_BALL).all():
+        block, alike = matrix[3:, 3:], True
+    else:
+        block, alike = matrix, np.ptp(np.diag(matrix)[:3]) <= 1e-9 * matrix[0, 0]
+    beside = np.abs(block - np.diag(np.diag(block))).max()
+    if not alike or beside > 1e-9 * np.abs(matrix).max():
         raise ModelError(
             f"MuJoCo keeps the inertia of body '{body_name(model, body)}' as a diagonal, since its "
             "centre of mass is its origin, and its added mass does not fit there; "
-            "move one of them by a hair, as in <inertial pos='0 0 -1e-5' .../>"
+            "write <body simple='false'>, or put the water into its MjSpec (add_water)"
         )
 
 

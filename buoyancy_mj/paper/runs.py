@@ -71,7 +71,7 @@ def run(
 
         # the draft
         centre = buoyancy.centre_of_mass(data)
-        level = float(scene.water.elevation(centre[0], centre[1], time))
+        level = float(buoyancy.water.elevation(centre[0], centre[1], time))
         lowest = min(
             float(
                 (hull.mesh.vertices @ data.geom_xmat[hull.geom][6:]).min()

@@ -14,6 +14,7 @@ from buoyancy_mj.engine.checks import skips_passive
 from buoyancy_mj.engine.plugin import add_water
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, SceneError
 from buoyancy_mj.loads.coefficients import add_coefficients
+from buoyancy_mj.loads.full_inertia import keep_full_inertia, make_room
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.dry_land import remove_dry_land
 from buoyancy_mj.scenes.parts import Afloat, Part, choose_free, find_afloat
@@ -61,6 +62,10 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     # what the scene decides
     spec.option.timestep = scene.timestep
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
+    make_room(spec, scene.added_mass)
+    for part in parts:
+        if any(part.entry.cog_shift):
+            keep_full_inertia(spec.bodies[body] for body in part.bodies)
     if with_water and has_texts(scene) and not skips_passive(spec.option.disableflags):
         # where the plugin cannot be, a warning on import has said so
         with contextlib.suppress(EngineError):

@@ -82,11 +82,11 @@ class Simulation(ReadOnly):
 
         # what a run leaves
         self._monitors = {
-            name: Monitor(self.model, vehicle, scene.water)
+            name: Monitor(self.model, vehicle, self.buoyancy.water)
             for name, vehicle in self.vehicles.items()
         }
         self._observers = {
-            name: Observer(self.model, vehicle, self._monitors[name], scene.water)
+            name: Observer(self.model, vehicle, self._monitors[name], self.buoyancy.water)
             for name, vehicle in self.vehicles.items()
         }
         self._wall_time = 0.0
@@ -94,7 +94,7 @@ class Simulation(ReadOnly):
         # compile what a fresh installation has not compiled, before the clock runs
         with self._lend_water(), raise_causes():
             mujoco.mj_forward(self.model, self._frame_data)
-        scene.water.elevation(0.0, 0.0, 0.0)
+        self.buoyancy.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
     @property

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.integrate import trapezoid
 
 from buoyancy_mj.errors import WaterError, describe
 from buoyancy_mj.values import ANY, read_array
@@ -106,6 +107,14 @@ class CurrentSeries:
         return cls(times, velocities)
 
     @property
+    def mean(self) -> NDArray[np.float64]:
+        """Mean velocity (3,) [m/s] from the first to the last of the times."""
+        if len(self.times) == 1:
+            return np.array(self.velocities[0])
+        path: NDArray[np.float64] = trapezoid(self.velocities, self.times, axis=0)
+        return path / (self.times[-1] - self.times[0])
+
+    @property
     def rows(self) -> NDArray[np.float64]:
         """The current as compiled code reads it (n, 5), see `kernels.currents`."""
         return np.column_stack([self.times, self.velocities, np.full(len(self.times), BY_TIME)])
@@ -120,6 +129,43 @@ def current_rows(current: Current) -> NDArray[np.float64]:
     if isinstance(current, CurrentProfile | CurrentSeries):
         return current.rows
     return np.array([[0.0, *current, BY_DEPTH]])
+
+
+def is_still(current: Current) -> bool:
+    """Whether a current has no horizontal velocity anywhere at any time."""
+    return not current_rows(current)[:, 1:3].any()
+
+
+def effective_current(
+    current: Current, wavenumbers: NDArray[np.float64], depth: ArrayLike = math.inf
+) -> NDArray[np.float64]:
+    """Horizontal velocity (n, 2) [m/s] of the current that waves feel, world frame.
+
+    Of a `CurrentProfile` it is the mean with the weight 2 k cosh 2k(z + h) / sinh 2kh, which is
+    right to first order in the current (Kirby and Chen 1989, J. Geophys. Res. 94(C1), 1013). Of a
+    `CurrentSeries` it is the mean over its times.
+
+    Args:
+        current: the current.
+        wavenumbers: of the waves, k (n,) [rad/m], above 0.
+        depth: depth of the water, h [m], of all or of each (n,).
+    """
+    if isinstance(current, CurrentSeries):
+        mean = current.mean
+        return np.tile(mean[:2], (len(wavenumbers), 1))
+    rows = current_rows(current)
+    depths, velocities = rows[:, 0], rows[:, 1:3]
+    surface = np.array([np.interp(0.0, depths, column) for column in velocities.T])
+
+    # integrated by parts: over each straight part its slope times the integral of
+    # sinh 2k(z + h) / sinh 2kh, which is written so that nothing overflows
+    k, h = wavenumbers[:, None], np.broadcast_to(depth, wavenumbers.shape)[:, None]
+    top, bottom = -np.clip(depths[:-1], 0.0, h), -np.clip(depths[1:], 0.0, h)
+    near_bottom = np.expm1(-2.0 * k * (top + bottom + 2.0 * h)) / np.expm1(-4.0 * k * h)
+    thickness = -np.expm1(-2.0 * k * (top - bottom)) / (2.0 * k)
+    slopes = np.diff(velocities, axis=0) / np.diff(depths)[:, None]
+    felt: NDArray[np.float64] = surface + (np.exp(2.0 * k * top) * near_bottom * thickness) @ slopes
+    return felt
 
 
 def parse_velocity(current: object) -> Velocity:

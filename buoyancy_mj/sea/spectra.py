@@ -4,47 +4,39 @@ import dataclasses
 import functools
 import math
 import random
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import WaterError
+from buoyancy_mj.sea.currents import Current, is_still
+from buoyancy_mj.sea.dispersion import (
+    Dispersion,
+    intrinsic_frequency,
+    read_frame,
+    wavenumber,
+)
 from buoyancy_mj.sea.distributions import jonswap_moments, jonswap_shape, spreading_angles
+from buoyancy_mj.sea.gravity import or_default, read_stated
+from buoyancy_mj.sea.irregular import (
+    MOST_COMPONENTS,
+    IrregularSea,
+    SeaOnCurrent,
+    describe_blocked,
+)
 from buoyancy_mj.sea.ranges import (
     LARGEST,
     SHORTEST,
     SMALLEST,
-    STRONGEST,
     read_depth,
     read_positive,
 )
-from buoyancy_mj.sea.waves import GRAVITY, wavenumber
+from buoyancy_mj.sea.waves import Wave
 from buoyancy_mj.values import read_number, read_whole_number, set_number
 
-MOST_COMPONENTS = 10_000
-"""Most waves of one sea."""
 ALPHA = 0.0081
 """Pierson and Moskowitz's constant of fully developed seas, S = ALPHA g^2 omega^-5 exp(...)."""
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class IrregularSea:
-    """Options that all irregular seas share."""
-
-    components: int = 64
-    """Number of waves."""
-    seed: int = 0
-    """Seed of phases and directions."""
-    direction: float = 0.0
-    """Mean direction that the sea runs to, from x towards y [rad]."""
-    spreading: float = math.inf
-    """Exponent s of the spreading cos^2s(b / 2) over directions b.
-
-    It is infinite for long crests, 10 to 25 for swell, and 2 to 5 for a wind sea."""
-    depth: float = math.inf
-    """Depth of the water [m]; it shortens the waves and leaves the spectrum as it is."""
-    gravity: float = GRAVITY
-    """Acceleration of gravity in the dispersion relation, g [m/s^2]."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,8 +54,12 @@ class JonswapSea(IrregularSea):
     deals out the directions, one for each wave, from equal shares of cos^2s((b - direction) / 2)
     (Longuet-Higgins et al. 1963).
 
+    On a current the spectrum is what an observer at rest measures there, or with `frame` "water"
+    what one measures who drifts with the current. Waves that the current blocks are left out, with
+    a warning, up to `irregular.MOST_BLOCKED` of the energy.
+
     Raises:
-        WaterError: a value out of its range.
+        WaterError: a value out of its range. `Water` raises it if the current blocks more.
 
     Example:
         >>> sea = JonswapSea(significant_height=0.5, peak_period=3.0, spreading=10.0, seed=7)
@@ -85,12 +81,13 @@ class JonswapSea(IrregularSea):
         set_number(self, WaterError, "peak_period", least=SMALLEST, most=LARGEST)
         set_number(self, WaterError, "gamma", least=1.0, most=20.0)
         set_number(self, WaterError, "direction")
-        set_number(self, WaterError, "gravity", least=SMALLEST, most=STRONGEST)
+        object.__setattr__(self, "gravity", read_stated(self.gravity))
         whole = {"components": (1, MOST_COMPONENTS), "seed": (0, 2**63 - 1)}
         for name, (least, most) in whole.items():
             number = read_whole_number(WaterError, name, getattr(self, name), least, most)
             object.__setattr__(self, name, number)
         object.__setattr__(self, "depth", read_depth(self.depth))
+        object.__setattr__(self, "frame", read_frame(self.frame))
         spreading = read_positive(
             "spreading", self.spreading, "an exponent above 0, or inf for long crests"
         )
@@ -102,7 +99,7 @@ class JonswapSea(IrregularSea):
                 f"significant_height is {self.significant_height} m in water {self.depth} m deep; "
                 "such waves break far outside: make them lower, or the water deeper"
             )
-        k = wavenumber(2.0 * math.pi / self.peak_period, self.depth, self.gravity)
+        k = wavenumber(2.0 * math.pi / self.peak_period, self.depth, or_default(self.gravity))
         shortest = max(SHORTEST, self.significant_height)
         if 2.0 * math.pi / k < shortest:
             raise WaterError(
@@ -137,24 +134,57 @@ class JonswapSea(IrregularSea):
 
     @functools.cached_property
     def rows(self) -> NDArray[np.float64]:
-        """The waves as rows (components, 6), see `Wave.rows`."""
-        n = self.components
+        """The waves in still water as rows (components, 6), see `Wave.rows`."""
+        omegas, directions, phases = self._waves
+        k = np.array([wavenumber(omega, self.depth, or_default(self.gravity)) for omega in omegas])
+        return self._rows_of(k, directions, omegas, phases)
+
+    def on(self, current: Current) -> Wave:
+        """The sea on a current, as its water sees it, see `waves.CurrentWave.on`.
+
+        Raises:
+            WaterError: the current blocks more than `irregular.MOST_BLOCKED` of the energy.
+        """
+        if self.frame == "water" or is_still(current):
+            return self
+
+        # those that run there
+        omegas, directions, phases = self._waves
+        peak = 2.0 * math.pi / self.peak_period
+        least, greatest = min(peak, omegas.min()), omegas.max()
+        dispersion = Dispersion(current, self.depth, or_default(self.gravity), (least, greatest))
+        k = np.array(list(map(dispersion.wavenumber, omegas, directions)))
+        runs = np.isfinite(k)
+        blocked = describe_blocked(omegas[~runs], self.components, self.peak_period)
+
+        # as the water sees them
+        k = k[runs]
+        sigma = intrinsic_frequency(k, self.depth, or_default(self.gravity))
+        rows = self._rows_of(k, directions[runs], sigma, phases[runs])
+        at_peak = np.array([dispersion.wavenumber(peak, self.direction)])
+        (seen,) = intrinsic_frequency(at_peak, self.depth, or_default(self.gravity))
+        steep = self._describe_steepness(2.0 * math.pi / float(seen))
+        return SeaOnCurrent(rows, ", and ".join(clause for clause in (blocked, steep) if clause))
+
+    @functools.cached_property
+    def _waves(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+        """Frequencies [rad/s], directions [rad] and phases [rad] of the waves (components,)."""
         stream = random.Random(self.seed)
-        phases = [2.0 * math.pi * stream.random() for _ in range(n)]
-        omegas = self._frequencies()
-        directions = self._directions(stream)
-        k = np.array([wavenumber(omega, self.depth, self.gravity) for omega in omegas])
-        amplitude = self.significant_height / 4.0 * math.sqrt(2.0 / n)
-        rows = np.column_stack(
-            [
-                np.full(n, amplitude),
-                k * np.cos(directions),
-                k * np.sin(directions),
-                omegas,
-                phases,
-                np.full(n, self.depth),
-            ]
-        )
+        phases = [2.0 * math.pi * stream.random() for _ in range(self.components)]
+        return self._frequencies(), self._directions(stream), np.array(phases)
+
+    def _rows_of(
+        self,
+        k: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        omegas: NDArray[np.float64],
+        phases: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """Rows (n, 6) of waves with these wavenumbers, directions, frequencies and phases (n,)."""
+        amplitude = self.significant_height / 4.0 * math.sqrt(2.0 / self.components)
+        kx, ky = k * np.cos(directions), k * np.sin(directions)
+        amplitudes, depths = np.full(len(k), amplitude), np.full(len(k), self.depth)
+        rows = np.column_stack([amplitudes, kx, ky, omegas, phases, depths])
         # the same for all who ask
         rows.setflags(write=False)
         return rows
@@ -180,17 +210,24 @@ class JonswapSea(IrregularSea):
 
     @property
     def warning(self) -> str:
-        """A clause that says how much too steep the sea is for nature; empty if it is not.
+        """A clause that says how much too steep the sea is for nature; empty if it is not."""
+        return self._describe_steepness(self.peak_period)
+
+    def _describe_steepness(self, peak_period: float) -> str:
+        """A clause that says how much too steep the sea is; empty if it is not.
 
         The mean steepness 2 pi Hs / (g Tp^2) stays below 1/15 up to a Tp of 8 s, and below 1/25
         from 15 s up, with straight lines between (DNV-RP-C205, 3.5.4).
+
+        Args:
+            peak_period: Tp as the water sees it [s]; NaN if no such wave runs.
         """
-        steepest = float(np.interp(self.peak_period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
-        limit = steepest * self.gravity * self.peak_period**2 / (2.0 * math.pi)
-        if self.significant_height <= limit:
+        steepest = float(np.interp(peak_period, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
+        limit = steepest * or_default(self.gravity) * peak_period**2 / (2.0 * math.pi)
+        if not self.significant_height > limit:
             return ""
         return (
-            f"a sea {self.significant_height:.3g} m high at {self.peak_period:.3g} s, "
+            f"a sea {self.significant_height:.3g} m high at {peak_period:.3g} s, "
             f"{self.significant_height / limit:.2f} times as steep as seas get before their waves "
             f"break; make it at most {limit:.3g} m high"
         )
@@ -215,17 +252,18 @@ class PiersonMoskowitzSea(IrregularSea):
     """Significant wave height Hs, four times the standard deviation of the elevation [m]."""
     peak_period: float = math.nan
     """Period Tp of the waves with the most energy [s]; by default it follows from the height."""
+    is_developed = False
+    """Whether the peak period was left to follow from the height."""
 
     def __post_init__(self) -> None:
         if isinstance(self.peak_period, float) and math.isnan(self.peak_period):
             height = read_number(
                 WaterError, "significant_height", self.significant_height, above=0.0
             )
-            gravity = read_number(
-                WaterError, "gravity", self.gravity, least=SMALLEST, most=STRONGEST
-            )
+            gravity = or_default(read_stated(self.gravity))
             omega = (16.0 * ALPHA / 5.0) ** 0.25 * math.sqrt(gravity / height)
             object.__setattr__(self, "peak_period", 2.0 * math.pi / omega)
+            object.__setattr__(self, "is_developed", True)
 
         # this checks all the rest
         _ = self.as_jonswap
@@ -238,8 +276,20 @@ class PiersonMoskowitzSea(IrregularSea):
 
     @property
     def rows(self) -> NDArray[np.float64]:
-        """The waves as rows (components, 6), see `Wave.rows`."""
+        """The waves in still water as rows (components, 6), see `Wave.rows`."""
         return self.as_jonswap.rows
+
+    def with_gravity(self, gravity: float) -> Self:
+        """The same sea under this acceleration of gravity [m/s^2], see `sea.gravity`.
+
+        A peak period that follows from the height does so again.
+        """
+        peak_period = math.nan if self.is_developed else self.peak_period
+        return dataclasses.replace(self, gravity=gravity, peak_period=peak_period)
+
+    def on(self, current: Current) -> Wave:
+        """The sea on a current, as its water sees it, see `JonswapSea.on`."""
+        return self.as_jonswap.on(current)
 
     @property
     def warning(self) -> str:

@@ -17,9 +17,12 @@ from buoyancy_mj.sea.currents import (
     current_rows,
     parse_velocity,
 )
+from buoyancy_mj.sea.dispersion import GRAVITY
+from buoyancy_mj.sea.doppler import add_doppler, describe_change
+from buoyancy_mj.sea.gravity import take_gravity
+from buoyancy_mj.sea.irregular import IrregularSea
 from buoyancy_mj.sea.ranges import LARGEST
-from buoyancy_mj.sea.spectra import IrregularSea
-from buoyancy_mj.sea.waves import GRAVITY, Wave
+from buoyancy_mj.sea.waves import Wave, depends_on_current
 from buoyancy_mj.values import ANY, read_array, set_number
 
 MOST_WAVES = 10_000
@@ -65,15 +68,15 @@ class Water:
                     "PiersonMoskowitzSea and LevelOscillation"
                 )
         object.__setattr__(self, "waves", waves)
+
+        # the current, which the waves meet
+        if not isinstance(self.current, CurrentProfile | CurrentSeries):
+            object.__setattr__(self, "current", parse_velocity(self.current))
         if len(self._rows) > MOST_WAVES:
             raise WaterError(
                 f"the sea has {len(self._rows)} waves; it may have {MOST_WAVES} at most, "
                 "so leave out the smallest"
             )
-
-        # the current
-        if not isinstance(self.current, CurrentProfile | CurrentSeries):
-            object.__setattr__(self, "current", parse_velocity(self.current))
 
     @property
     def _waves(self) -> tuple[Wave, ...]:
@@ -82,7 +85,11 @@ class Water:
 
     @functools.cached_property
     def rows(self) -> NDArray[np.float64]:
-        """The components of all waves as rows (n, 6), see `Wave.rows`; read-only."""
+        """The components of all waves on the current as rows (n, 7), read-only.
+
+        The columns are those of `Wave.rows`, and the angular frequency sigma [rad/s] that the water
+        sees, which drifts with the current; see `kernels.waves`.
+        """
         return _read_only(self._rows)
 
     @functools.cached_property
@@ -94,7 +101,22 @@ class Water:
 
     @functools.cached_property
     def _rows(self) -> NDArray[np.float64]:
-        return np.concatenate([np.zeros((0, 6)), *map(_rows_of, self._waves)])
+        return np.concatenate([np.zeros((0, 7)), *self._rows_by_wave])
+
+    @functools.cached_property
+    def _seen(self) -> tuple[Wave, ...]:
+        """The waves on the current, as the water sees them; here alone they meet it."""
+        return tuple(
+            wave.on(self.current) if depends_on_current(wave) else wave for wave in self._waves
+        )
+
+    @functools.cached_property
+    def _rows_by_wave(self) -> tuple[NDArray[np.float64], ...]:
+        """The rows (n, 7) of each wave."""
+        return tuple(
+            add_doppler(_rows_of(seen), self.current, at_rest=not depends_on_current(wave))
+            for wave, seen in zip(self._waves, self._seen, strict=True)
+        )
 
     @functools.cached_property
     def _current_rows(self) -> NDArray[np.float64]:
@@ -108,8 +130,8 @@ class Water:
         deviations.
         """
         total = 0.0
-        for wave in self._waves:
-            amplitude, kx, ky, *_ = wave.rows.T
+        for wave, rows in zip(self._waves, self._rows_by_wave, strict=True):
+            amplitude, kx, ky, *_ = rows.T
             each = np.abs(amplitude) * (kx**2 + ky**2)
             bound = each.sum()
             if isinstance(wave, IrregularSea):
@@ -119,9 +141,29 @@ class Water:
 
     @functools.cached_property
     def warnings(self) -> tuple[str, ...]:
-        """A clause for each wave that would break in nature, see `RegularWave.warning`."""
-        clauses = (getattr(wave, "warning", "") for wave in self._waves)
+        """A clause for each doubt about the waves.
+
+        One is for each wave that would break in nature, see `RegularWave.warning`, one for each sea
+        of which the current blocks a part, and one for waves on a current that changes with time.
+        """
+        clauses = [getattr(wave, "warning", "") for wave in self._seen]
+        if isinstance(self.current, CurrentSeries):
+            clauses.append(describe_change(self.current, self._rows))
         return tuple(clause for clause in clauses if clause)
+
+    def with_gravity(self, gravity: float) -> "Water":
+        """The water of a model: waves that state no gravity take the model's.
+
+        Args:
+            gravity: of the model [m/s^2]. Where it is 0, waves keep theirs, 9.81 by default.
+
+        Raises:
+            WaterError: a wave states another gravity, or there is no such wave under this one.
+        """
+        waves = tuple(take_gravity(wave, gravity) for wave in self._waves)
+        if all(new is old for new, old in zip(waves, self._waves, strict=True)):
+            return self
+        return dataclasses.replace(self, waves=waves)
 
     def elevation(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
         """Height of the surface (...) [m], world frame.
@@ -177,7 +219,9 @@ class Water:
     def acceleration(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Acceleration (..., 3) [m/s^2] of the water at points (..., 3) [m] and a time [s].
 
-        It is the rate of `velocity` at fixed places, without the convective part.
+        It is that of the water itself, which drifts with the current: the rate of `velocity` for
+        who drifts along, and what moves a body with added mass. The part that is convected by the
+        orbital velocity, and by the shear of a profile, is left out.
         """
         p = _read_points(points)
         out = np.empty((p.size // 3, 3))

@@ -4,14 +4,13 @@ import dataclasses
 from collections.abc import Mapping
 from typing import Any, cast
 
-import numpy as np
-
 from buoyancy_mj.errors import BuoyancyError, MethodError, ModelError, WaterError, describe
 from buoyancy_mj.hulls.selection import Selection, join_words, split_words
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.sea.currents import Current
+from buoyancy_mj.sea.spectra import PiersonMoskowitzSea
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.sea.waves import RegularWave, Wave
+from buoyancy_mj.sea.waves import LENGTHS, RegularWave, Wave
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.texts import format_table, format_value, parse_table, parse_value
 from buoyancy_mj.settings.toml import (
@@ -33,8 +32,6 @@ KEYS = (*WATER, "method", "pressure", "damping", "added_mass", *SELECTION)
 INSTANCE = "instance"
 """Key that holds the name of the instance where `add_water` put it. If the model has another name
 for it, the instance was attached under a prefix, and is the water of what came with it."""
-_LENGTHS = ("frequency", "period", "wavelength")
-"""Fields of a regular wave of which any one gives the others."""
 
 
 def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
@@ -136,27 +133,21 @@ def _parse_damping(text: str, where: str) -> Any:
 
 
 def _format_wave(wave: Wave) -> str:
-    """A wave as text; a regular one by whichever of its lengths gives it back to the last bit."""
+    """A wave as text."""
     kinds = [kind for kind, cls in WAVES.items() if type(wave) is cls]
     if not kinds:
         raise WaterError(
             f"{describe(wave)} cannot be written into a model; possible are {', '.join(WAVES)}"
         )
-    leave_out = _redundant_lengths(wave) if isinstance(wave, RegularWave) else ()
-    return format_table(kinds[0], wave, leave_out=leave_out)
+    return format_table(kinds[0], wave, leave_out=_list_derived(wave))
 
 
-def _redundant_lengths(wave: RegularWave) -> tuple[str, ...]:
-    """Fields that another one gives back to the last bit; none if no field does."""
-    fields = {field.name: getattr(wave, field.name) for field in dataclasses.fields(wave)}
-    for name in _LENGTHS:
-        others = tuple(other for other in _LENGTHS if other != name)
-        try:
-            copy = RegularWave(**{key: fields[key] for key in fields if key not in others})
-        except BuoyancyError:
-            continue
-        if np.array_equal(copy.rows, wave.rows):
-            return others
+def _list_derived(wave: Wave) -> tuple[str, ...]:
+    """Fields of a wave that follow from others, under any gravity."""
+    if isinstance(wave, RegularWave):
+        return tuple(name for name in LENGTHS if name != wave.given)
+    if isinstance(wave, PiersonMoskowitzSea) and wave.is_developed:
+        return ("peak_period",)
     return ()
 
 

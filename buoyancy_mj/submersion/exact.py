@@ -179,7 +179,7 @@ def _hulls(
     frames: NDArray[np.int64],
     waves: NDArray[np.float64],
 ) -> Hulls:
-    """Meshes and their trees, joined, for waves (w, 6); see `PackedHulls` for the arguments."""
+    """Meshes and their trees, joined, for waves (w, 7); see `PackedHulls` for the arguments."""
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
     first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
     first_node = np.cumsum([0, *(len(t.spans) for t in trees)])

@@ -23,7 +23,7 @@ MOST_PANELS = 100_000
 
 
 def check_waves(radius: float, waves: NDArray[np.float64]) -> None:
-    """Refuse waves (w, 6) that no pass over a hull of a radius [m] resolves within its time.
+    """Refuse waves (w, 7) that no pass over a hull of a radius [m] resolves within its time.
 
     Raises:
         WaterError: the shortest wave is shorter than 2 pi / `MOST_TURNS` of the radius, or short

@@ -89,13 +89,13 @@ class BodyDrawing:
         """Which vertices (n,) of a geom are under water."""
         world_from_geom = frame.data.geom_xmat[geom.geom].reshape(3, 3)
         points = geom.vertices @ world_from_geom.T + frame.data.geom_xpos[geom.geom]
-        wet: NDArray[np.bool_] = self._simulation.scene.water.depth(points, frame.time) > 0.0
+        wet: NDArray[np.bool_] = self._simulation.buoyancy.water.depth(points, frame.time) > 0.0
         return wet
 
     def _draw_waterline(self, log: Log, frame: Frame) -> None:
         """Draw the waterline on all hulls that the surface cuts."""
         data = frame.data
-        water = self._simulation.scene.water
+        water = self._simulation.buoyancy.water
         hulls = self._simulation.buoyancy.hulls
         lines = [
             cut_wetted_surface(

@@ -81,7 +81,7 @@ class Recording:
         self._start = place_at_start(simulation)
         self._size = measure_extent(vehicles, self._start)
         self._bodies = BodyDrawing(simulation, max(vehicle.length for vehicle in vehicles))
-        self._surface = SurfaceDrawing(simulation.scene.water, self._size)
+        self._surface = SurfaceDrawing(simulation.buoyancy.water, self._size)
         self._draw_static()
 
     def __del__(self) -> None:

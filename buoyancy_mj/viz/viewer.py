@@ -53,7 +53,7 @@ def view_simulation(simulation: Simulation) -> None:
             with viewer.lock():
                 while data.time < end:
                     simulation.step()
-                water = simulation.scene.water
+                water = simulation.buoyancy.water
                 middle = find_middle(vehicle.centre_of_mass(data) for vehicle in vehicles)
                 draw_surface(viewer.user_scn, water, middle, size, data.time)
             viewer.sync()
