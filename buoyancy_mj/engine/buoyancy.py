@@ -20,6 +20,7 @@ from buoyancy_mj.engine.checks import (
     check_waves,
     warn_of_fixed_carrier,
     warn_of_no_volume,
+    warn_of_no_waterplane,
 )
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.readout import read_loads
@@ -55,7 +56,7 @@ class Buoyancy(ReadOnly):
             options.
         bodies: indices of the bodies whose geoms may displace; None for all.
         options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
-            selection.
+            slamming, selection.
 
     Raises:
         ModelError: gravity that is not along -z, actuation disabled (MuJoCo then skips an
@@ -96,6 +97,7 @@ class Buoyancy(ReadOnly):
         check_waves(model, self.water, self.hulls)
         warn_of_no_volume(model)
         warn_of_fixed_carrier(model, self.hulls)
+        warn_of_no_waterplane(model, self.added_mass, self.settings.method)
 
         # the bodies
         self.bodies = self._acting.load_model.arrays.bodies

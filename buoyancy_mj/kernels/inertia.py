@@ -1,9 +1,18 @@
 """Added mass: in the engine's mass matrix, and the rest of the water's reaction as a load.
 
-The water opposes a body's motion with -A (dv - du) - C(v - u) (v - u), in the body's axes: v its
-velocity, dv the rate of those components, u the water's there (Fossen 2021, sec. 6.3 and 8.1). The
-part -A dv that goes with the engine's accelerations stands in its mass matrix, so that it cannot be
-unstable.
+The water's kinetic energy is 1/2 s v'A v, with v the body's velocity relative to the water, along
+the body's axes, and s the wet share of the body. So the water opposes the body by
+
+    - s A (dv - du) - s C(v) v - ds/dt A v + 1/2 (v'A v) grad s
+
+(Lagrange's equations; Fossen 2021, sec. 6.3 and 8.1, for all but the change of s), where dv is the
+rate of the body's own components and du of the water's. In still water the power of all that is the
+rate of that energy: none is made or lost. The part -s A dv that goes with the engine's
+accelerations stands in its mass matrix, so that it cannot be unstable.
+
+Of the momentum that an entry takes the water carries a part away, as spray. With `slamming` the
+water then keeps ds/dt A v in full, as von Karman (1929, NACA TN 321) has it: the last term, which
+gives half of it back, is left out while s grows.
 """
 
 from typing import Annotated, NamedTuple
@@ -12,11 +21,13 @@ import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
-from buoyancy_mj.kernels.clip import CX, VOLUME
+from buoyancy_mj.kernels.clip import CX
 from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.multibody import last_dof
-from buoyancy_mj.kernels.vectors import difference, rotate, rotate_back, scale, triple
+from buoyancy_mj.kernels.spatial_inertia import find_hold, set_inertia
+from buoyancy_mj.kernels.vectors import difference, rotate, rotate_back, triple
 from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+from buoyancy_mj.kernels.wet_share import set_gradient, wet_share
 
 
 class AddedMass(NamedTuple):
@@ -29,6 +40,16 @@ class AddedMass(NamedTuple):
     matrices: Annotated[Doubles, ("n", 36)]
     """Row by row [kg, kg m, kg m^2]: surge, sway, heave, roll, pitch, yaw along the axes of each
     body, about its origin."""
+    hulls: Annotated[Words, ("h",)]
+    """Indices of the hulls of each, one body after the other."""
+    hull_starts: Annotated[Words, ("n + 1",)]
+    """Where those of each body begin, and the end of all."""
+    members: Annotated[Words, ("m",)]
+    """Indices of each body and of all that is welded to it, one body after the other."""
+    member_starts: Annotated[Words, ("n + 1",)]
+    """Where those of each body begin, and the end of all."""
+    slamming: int
+    """1 where the water keeps the momentum that an entry takes."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -43,16 +64,16 @@ def add_inertia(
 
     Returns whether any body was wet.
     """
-    p, g, u = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    p, g, half, u = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     changed = False
     for n in range(added_mass.bodies.shape[0]):
         b = added_mass.bodies[n]
-        wet = _wet_part(centres, b, added_mass.volumes[n])
-        if not wet > 0.0:
+        share = wet_share(centres, b, added_mass.volumes[n])
+        if not share > 0.0:
             continue
         changed = True
         _to_body(bodies, b, p)
-        _transform(added_mass.matrices[n], p, wet, g)
+        _transform(added_mass.matrices[n], p, share, half, g)
         i = last_dof(joints, b)
         while i >= 0:
             for k in range(6):
@@ -62,12 +83,6 @@ def add_inertia(
             _add_row(joints, mass_matrix, i, u)
             i = joints.dof_parentid[i]
     return changed
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _wet_part(centres, b, volume):
-    """The part of a body's volume that is wet."""
-    return min(centres[b, VOLUME] / volume, 1.0)
 
 
 @njit(cache=True, error_model="numpy")
@@ -90,15 +105,20 @@ def _to_body(bodies, b, out):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _transform(matrix, p, factor, out):
-    """Write factor p^T A p of a matrix A, row by row (36,), to `out` (6, 6)."""
+def _transform(matrix, p, factor, half, out):
+    """Write factor p^T A p of a matrix A, row by row (36,), to `out` (6, 6); `half` is scratch."""
     for i in range(6):
         for j in range(6):
             total = 0.0
             for k in range(6):
-                for m in range(6):
-                    total += p[k, i] * matrix[6 * k + m] * p[m, j]
-            out[i, j] = factor * total
+                total += matrix[6 * i + k] * p[k, j]
+            half[i, j] = factor * total
+    for i in range(6):
+        for j in range(6):
+            total = 0.0
+            for k in range(6):
+                total += p[k, i] * half[k, j]
+            out[i, j] = total
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -120,20 +140,26 @@ def add_reaction(
     joints,
     sea,  # `sea.Sea`
     time,  # [s]
+    timestep,  # [s]
+    wet,  # (h, 8) submersion of the hulls
     centres,
     out,  # (nbody, 6)
+    slamming,  # (nbody, 6); no rows without slamming
 ):
     """Add the reaction about `xipos`, but for the part that goes with the joints' accelerations.
 
-    That part, -A times what the accelerations bring, stands in the mass matrix.
+    That part, -s A times what the accelerations bring, stands in the mass matrix.
     """
-    p = np.empty((6, 6))
+    p, whole = np.empty((6, 6)), np.empty((6, 6))
     water, rush = np.empty(3), np.empty(3)
     spin, rate, v, f = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
+    gradient, change, kept = np.empty(6), np.empty(6), np.empty(6)
+    hulls, hull_starts = added_mass.hulls, added_mass.hull_starts
+    members, member_starts = added_mass.members, added_mass.member_starts
     for n in range(added_mass.bodies.shape[0]):
         b = added_mass.bodies[n]
-        wet = _wet_part(centres, b, added_mass.volumes[n])
-        if not wet > 0.0:
+        share = wet_share(centres, b, added_mass.volumes[n])
+        if not share > 0.0:
             continue
         r = bodies.xmat[b]
         _to_body(bodies, b, p)
@@ -150,6 +176,20 @@ def add_reaction(
             for k in range(6):
                 v[i] += p[i, k] * bodies.cvel[b, k]
                 rate[i] += p[i, k] * spin[k]
+
+        # how fast the wet share grows
+        growth = set_gradient(
+            hulls[hull_starts[n] : hull_starts[n + 1]],
+            wet,
+            added_mass.volumes[n],
+            sea.level,
+            sea.waves,
+            time,
+            r,
+            bodies.xpos[b],
+            gradient,
+        )
+        growth += _dot(gradient, v)
 
         # the water's velocity and acceleration at the centroid
         x, y, z = triple(centres, b, CX)
@@ -169,17 +209,59 @@ def add_reaction(
         _multiply(added_mass.matrices[n], rate, f)
         _multiply(added_mass.matrices[n], v, spin)
         _add_coriolis(v, spin, f)
+        for i in range(6):
+            f[i] *= -share
 
-        # minus all that, about the centre of mass
-        fx, fy, fz = scale(-wet, rotate(r, f[0], f[1], f[2]))
-        tx, ty, tz = scale(wet, rotate(r, f[3], f[4], f[5]))
-        x, y, z = difference(bodies.xpos[b], bodies.xipos[b])
-        out[b, 0] += fx
-        out[b, 1] += fy
-        out[b, 2] += fz
-        out[b, 3] += y * fz - z * fy - tx
-        out[b, 4] += z * fx - x * fz - ty
-        out[b, 5] += x * fy - y * fx - tz
+        # what the change of the wet share brings
+        if gradient[0] != 0.0 or gradient[1] != 0.0 or gradient[2] != 0.0:
+            keeps = added_mass.slamming != 0 and growth > 0.0
+            _set_change(share, growth, gradient, v, spin, timestep, keeps, change, kept)
+            for i in range(6):
+                rate[i] = change[i] + kept[i]
+            group = members[member_starts[n] : member_starts[n + 1]]
+            set_inertia(bodies, b, group, added_mass.matrices[n], share, whole)
+            held = find_hold(whole, v, rate, timestep, spin)
+            for i in range(6):
+                f[i] += held * change[i]
+                kept[i] *= held
+            if keeps:
+                _deliver(bodies, b, kept, slamming[b])
+        _deliver(bodies, b, f, out[b])
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _set_change(share, growth, gradient, v, momentum, timestep, keeps, change, kept):
+    """Write -ds/dt A v + 1/2 (v'A v) grad s to `change` (6,), and what slamming keeps to `kept`.
+
+    A share that shrinks to nothing within the timestep gives back only what is left of it.
+    """
+    shrinkage = -growth * timestep
+    factor = share / shrinkage if shrinkage > share else 1.0
+    lift = 0.5 * _dot(v, momentum)
+    for i in range(6):
+        change[i] = factor * (lift * gradient[i] - growth * momentum[i])
+        kept[i] = -lift * gradient[i] if keeps else 0.0
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _deliver(bodies, b, f, out):
+    """Add a wrench at a body's origin, along its axes, to `out` (6,): about `xipos`, world axes."""
+    r = bodies.xmat[b]
+    fx, fy, fz = rotate(r, f[0], f[1], f[2])
+    tx, ty, tz = rotate(r, f[3], f[4], f[5])
+    x, y, z = difference(bodies.xpos[b], bodies.xipos[b])
+    out[0] += fx
+    out[1] += fy
+    out[2] += fz
+    out[3] += tx + y * fz - z * fy
+    out[4] += ty + z * fx - x * fz
+    out[5] += tz + x * fy - y * fx
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _dot(x, y):
+    """The scalar product of two vectors (6,)."""
+    return x[0] * y[0] + x[1] * y[1] + x[2] * y[2] + x[3] * y[3] + x[4] * y[4] + x[5] * y[5]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
