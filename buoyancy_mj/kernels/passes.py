@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from buoyancy_mj.kernels import damping, inertia, panels, pressure, wrenches
+from buoyancy_mj.kernels import damping, inertia, panels, pressure, reaction, wrenches
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.hulls import Hulls
@@ -200,7 +200,7 @@ def add_radiation(arrays):
 def add_reaction(arrays):
     """What added mass does beside its inertia, and what the water keeps of it in an entry."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
-    inertia.add_reaction(
+    reaction.add_reaction(
         loads.added_mass,
         engine.bodies,
         engine.joints,

@@ -65,6 +65,7 @@ def find_hold(
     inertia,  # (6, 6) lower triangle; its Cholesky factor afterwards
     v,  # (6,) velocity
     wrench,  # (6,)
+    more,  # (6,), which is added to it
     timestep,  # [s]
     work,  # (6,) scratch
 ):
@@ -88,7 +89,7 @@ def find_hold(
             for k in range(j):
                 total -= inertia[i, k] * inertia[j, k]
             inertia[i, j] = total / inertia[j, j]
-        pivot, total = inertia[i, i], wrench[i]
+        pivot, total = inertia[i, i], wrench[i] + more[i]
         for k in range(i):
             pivot -= inertia[i, k] * inertia[i, k]
             total -= inertia[i, k] * work[k]
