@@ -2,6 +2,7 @@
 
 import itertools
 
+import mujoco
 import numpy as np
 import trimesh
 from scipy.integrate import quad
@@ -179,3 +180,49 @@ def directly(mesh, position, turn, water, time):
                 volume -= area / 3.0 * m[3]
                 moments -= area / 3.0 * m[3] * np.array([m[0], m[1], m[2] + 0.5 * m[3]])
     return volume, moments
+
+
+def reaction(model, buoyancy, data, slamming=False, step=1e-6):
+    """Force and torque (6,) of added mass about `xipos` on a body that floats free and unforced.
+
+    Of the body alone, but for what goes with its acceleration: -s (A (dv - du) + C v) - ds/dt A v
+    + 1/2 (v'A v) grad s, by differences of the submerged volume; the acceleration of the velocity's
+    components along the body's axes is -w x v.
+    """
+    added = buoyancy.added_mass
+    matrix, volume, body = added.matrices[0].reshape(6, 6), added.volumes[0], added.bodies[0]
+    turn, origin = data.xmat[body].reshape(3, 3), data.xpos[body]
+
+    # the wet share, its gradient along the axes of the free joint, and its rate at rest
+    def share(push, later=0.0):
+        moved = mujoco.MjData(model)
+        moved.qpos[:], moved.time = data.qpos, data.time + later
+        mujoco.mj_integratePos(model, moved.qpos, np.asarray(push, float), 1.0)
+        mujoco.mj_forward(model, moved)
+        return buoyancy.evaluate(moved).total.volume / volume
+
+    pushes = step * np.eye(6)
+    gradient = np.array([(share(push) - share(-push)) / (2.0 * step) for push in pushes])
+    gradient[:3] = turn.T @ gradient[:3]
+    rate = (share(np.zeros(6), step) - share(np.zeros(6), -step)) / (2.0 * step)
+    absolute = np.concatenate([turn.T @ data.qvel[:3], data.qvel[3:]])
+    growth = gradient @ absolute + rate
+
+    # relative to the water at the centroid of what is wet
+    loads = buoyancy.evaluate(data)
+    centroid, spin = loads.body.centroid[body], absolute[3:]
+    water = turn.T @ buoyancy.water.velocity(centroid, time=data.time)
+    rush = turn.T @ buoyancy.water.acceleration(centroid, time=data.time)
+    v = absolute - np.concatenate([water, np.zeros(3)])
+    change = np.concatenate(
+        [-np.cross(spin, absolute[:3]) - (rush - np.cross(spin, water)), [0] * 3]
+    )
+    p, h = np.split(matrix @ v, 2)
+    coriolis = np.concatenate([np.cross(spin, p), np.cross(v[:3], p) + np.cross(spin, h)])
+    force = -share(np.zeros(6)) * (matrix @ change + coriolis) - growth * (matrix @ v)
+    if not (slamming and growth > 0.0):
+        force += 0.5 * (v @ matrix @ v) * gradient
+
+    # about the centre of mass, in the world's axes
+    push, torque = turn @ force[:3], turn @ force[3:]
+    return np.concatenate([push, torque + np.cross(origin - data.xipos[body], push)])

@@ -21,6 +21,7 @@ from buoyancy_mj.engine.checks import (
     check_waves,
     warn_of_fixed_carrier,
     warn_of_no_volume,
+    warn_of_no_waterplane,
 )
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.readout import read_loads
@@ -56,7 +57,7 @@ class Buoyancy(ReadOnly):
             options.
         bodies: indices of the bodies whose geoms may displace; None for all.
         options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
-            selection.
+            slamming, selection.
 
     Raises:
         WaterError: a wave that states another gravity than the model's.
@@ -101,6 +102,7 @@ class Buoyancy(ReadOnly):
         check_waves(model, self.water, self.hulls)
         warn_of_no_volume(model)
         warn_of_fixed_carrier(model, self.hulls)
+        warn_of_no_waterplane(model, self.added_mass, self.settings.method)
 
         # the bodies
         self.bodies = self._acting.load_model.arrays.bodies

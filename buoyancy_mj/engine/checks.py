@@ -14,8 +14,11 @@ from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
 from buoyancy_mj.hulls.tethers import find_tether
 from buoyancy_mj.hulls.verdicts import SOLID_TYPES
+from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.kernels.waves import DEPTH
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.submersion.exact import Exact
+from buoyancy_mj.submersion.methods import Method
 
 
 def skips_passive(disableflags: int) -> bool:
@@ -160,6 +163,19 @@ def warn_of_fixed_carrier(model: mujoco.MjModel, hulls: Sequence[Hull]) -> None:
         warnings.warn(
             f"body '{body_name(model, int(carriers[0]))}' has no joint and stays where it is, and "
             "only what hangs on it is in the water; give it a <freejoint/> if it shall float",
+            BuoyancyWarning,
+            stacklevel=3,
+        )
+
+
+def warn_of_no_waterplane(model: mujoco.MjModel, added_mass: AddedMass, method: Method) -> None:
+    """Name what has added mass under a method that cannot tell how it enters the water."""
+    if len(added_mass.bodies) and not isinstance(method, Exact):
+        names = ", ".join(f"'{body_name(model, int(body))}'" for body in added_mass.bodies)
+        warnings.warn(
+            f"the method '{method.name}' knows no waterplane, so that the added mass of {names} "
+            "makes and takes energy on the way into the water and out of it; use the method "
+            "'exact', or added_mass='none'",
             BuoyancyWarning,
             stacklevel=3,
         )

@@ -51,6 +51,7 @@ class LoadModel:
             "drag": len(damping.bodies) > 0,
             "radiation": damping.radiates,
             "added_mass": len(self.arrays.added_mass.bodies) > 0,
+            "slamming": self.arrays.added_mass.slamming != 0,
         }
         return tuple(cause for cause in CAUSES if acts.get(cause, True))
 
@@ -141,7 +142,9 @@ def build_load_model(
         damping=resolve_damping(damping, model, hulls, water.density)
         if damping
         else empty(DampingArrays),
-        added_mass=resolve_added_mass(model, hulls, water.density, settings.added_mass),
+        added_mass=resolve_added_mass(
+            model, hulls, water.density, settings.added_mass, slamming=settings.slamming
+        ),
     )
     if arrays.damping.radiates and not isinstance(packed, PackedHulls):
         radiating = arrays.damping.bodies[arrays.damping.radiation.any(axis=1)]

@@ -55,7 +55,7 @@ def add_water(
             options.
         instance: name of the plugin's instance in the model.
         options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
-            selection.
+            slamming, selection.
 
     Raises:
         ModelError: the model has an instance of that name, or `spec` is no MjSpec.

@@ -14,7 +14,9 @@ summed:
     int z dV = - int (z + d/2) d n_z dA + int (p + e/2) e dxdy
 
 with d the depth under the plane, p its height, and the last integrals over the waterplane, whose
-outline is where the triangles are cut. All of it is summed in the frame of the hull, where the
+outline is where the triangles are cut. The waterplane's own area is - int n_z dA over the wet side,
+and its centroid is summed along the outline, over the triangles from the middle of the hull to each
+cut. All of it is summed in the frame of the hull, where the
 vertices stand still and the vertical leans.
 """
 
@@ -38,8 +40,9 @@ from buoyancy_mj.kernels.triangles import cut, moments
 from buoyancy_mj.kernels.vectors import difference, place, rotate, triple
 from buoyancy_mj.kernels.waves import swing
 
-VOLUME, CX, CY, CZ, WETTED_AREA, WATERPLANE_AREA, COLUMNS = range(7)
-"""Columns of one row of results, and how many: volume, its centroid (3), and areas."""
+VOLUME, CX, CY, CZ, WETTED_AREA, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y, COLUMNS = range(9)
+"""Columns of one row of results, and how many: volume, its centroid (3), areas, and the centroid of
+the waterplane (2)."""
 CENTROID = slice(CX, WETTED_AREA)
 """Columns of the centroid."""
 
@@ -52,7 +55,7 @@ def submerge_hulls(
     waves,  # (w, 7)
     time,  # [s]
     scratch,  # `scratch.CutScratch`
-    out,  # (h, 6) volume, centroid (world; NaN when dry), wetted area, waterplane area
+    out,  # (h, 8) volume, centroid (world; NaN when dry), wetted area, waterplane (NaN when none)
 ):
     """Write the submersion of each hull to `out`.
 
@@ -77,57 +80,58 @@ def submerge_hulls(
         if not math.isfinite(depth):
             out[h, :] = math.nan
         elif depth >= spread:
-            _set_whole(out, h, wholes, origin, r, wholes[h, WHOLE_AREA], 0.0)
+            _set_whole(out, h, wholes, origin, r, wholes[h, WHOLE_AREA])
         elif depth <= -spread:
             _set_dry(out, h)
         else:
-            v, mx, my, mz, p, area = _walk(
-                hulls, h, origin, r, level, waves, time, curvature, scratch
-            )
-            _set_wet(out, h, wholes, origin, r, v, mx, my, mz, area, p)
+            wet = _walk(hulls, h, origin, r, level, waves, time, curvature, scratch)
+            _set_wet(out, h, wholes, origin, r, wet)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _set_dry(out, h):
     """Write the results of a hull that is not in the water."""
     out[h, VOLUME] = out[h, WETTED_AREA] = out[h, WATERPLANE_AREA] = 0.0
-    out[h, CX] = out[h, CY] = out[h, CZ] = math.nan
+    out[h, CX] = out[h, CY] = out[h, CZ] = out[h, WATERPLANE_X] = out[h, WATERPLANE_Y] = math.nan
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _set_whole(out, h, wholes, origin, r, area, waterplane):
+def _set_whole(out, h, wholes, origin, r, area):
     """Write the results of a hull whose whole volume is under water."""
     out[h, VOLUME], out[h, WETTED_AREA] = wholes[h, WHOLE_VOLUME], area
-    out[h, WATERPLANE_AREA] = waterplane
+    out[h, WATERPLANE_AREA] = 0.0
+    out[h, WATERPLANE_X] = out[h, WATERPLANE_Y] = math.nan
     x, y, z = triple(wholes, h, WHOLE_CENTROID)
     out[h, CX], out[h, CY], out[h, CZ] = place(origin, r, x, y, z)
 
 
 @njit(cache=True, error_model="numpy")
-def _set_wet(out, h, wholes, origin, r, v, mx, my, mz, area, waterplane):
-    """Write the results of a hull that the surface cuts, by its volume and first moments.
-
-    The moments are about the origin of the hull's frame, in the world's axes.
-    """
-    # never more than all of it, and below the rounding of the sums there is no centroid to speak of
-    if v >= wholes[h, WHOLE_VOLUME]:
-        _set_whole(out, h, wholes, origin, r, area, waterplane)
-    elif v > 1e-14 * wholes[h, WHOLE_VOLUME]:
-        out[h, VOLUME], out[h, WETTED_AREA], out[h, WATERPLANE_AREA] = v, area, waterplane
+def _set_wet(out, h, wholes, origin, r, wet):
+    """Write the results of a hull that the surface cuts, by what `_walk` found."""
+    v, mx, my, mz, area, waterplane, px, py = wet
+    # below the rounding of the sums there is no centroid to speak of, and never more than all of it
+    if not v > 1e-14 * wholes[h, WHOLE_VOLUME]:
+        _set_dry(out, h)
+        return
+    _set_whole(out, h, wholes, origin, r, area)
+    if v < wholes[h, WHOLE_VOLUME]:
+        out[h, VOLUME] = v
         out[h, CX] = origin[0] + mx / v
         out[h, CY] = origin[1] + my / v
         out[h, CZ] = origin[2] + mz / v
-    else:
-        _set_dry(out, h)
+    if waterplane != 0.0:
+        out[h, WATERPLANE_AREA] = waterplane
+        out[h, WATERPLANE_X] = origin[0] + px / waterplane
+        out[h, WATERPLANE_Y] = origin[1] + py / waterplane
 
 
 @njit(cache=True, error_model="numpy")
 def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
     hulls, h, origin, r, level, waves, time, curvature, scratch
 ):
-    """Volume of a hull, its first moments, waterplane and wetted area, by its tree.
+    """Volume of a hull, its first moments, wetted area, waterplane and its moments, by its tree.
 
-    The moments are about the origin of the hull's frame, in the world's axes.
+    All moments are about the origin of the hull's frame, in the world's axes.
 
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their
     moments. `curvature` is a bound of the surface's over the hull.
@@ -139,8 +143,9 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     plane, rest = swell.approach(level, waves, origin, r, hulls.whole, h, time, near, flat)
     wavy = rest.near > 0 or rest.smooth
 
-    # seven integrals over the wet side, and four of e over the waterplane
+    # seven integrals over the wet side, four of e over the waterplane, and its moments
     total, extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
+    ax = ay = 0.0
     i, end = hulls.nodes[h], hulls.nodes[h + 1]
     while i < end:
         middle, half = triple(boxes, i, tree.MIDDLE), triple(boxes, i, tree.HALF)
@@ -191,8 +196,11 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                     part, fraction = moments(a, p, q, s), 1.0
                 else:
                     part, fraction, one, other = cut(a, p, q, s, w0, w1, w2)
+                    ends = swell.seen_from_above(plane, r, one, other)
+                    px, py, qx, qy = ends
+                    sixth = (px * qy - py * qx) / 6.0
+                    ax, ay = ax + sixth * (px + qx), ay + sixth * (py + qy)
                     if wavy:
-                        ends = swell.seen_from_above(plane, r, one, other)
                         more = swell.waterplane_moments(
                             ends, plane.height, plane.slope, rest, near, flat, ray
                         )
@@ -207,7 +215,10 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     cx, cy, _ = rotate(r, c0, c1, c2)
     fill = hulls.whole[h, FILL]
     i0, ix, iy, iz = fill * extra[0], fill * extra[1], fill * extra[2], fill * extra[3]
-    return i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q, -p, area
+    return (
+        i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q,
+        area, -p, fill * ax - cx * p, fill * ay - cy * p,
+    )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy", inline="always")

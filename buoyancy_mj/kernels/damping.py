@@ -129,7 +129,7 @@ def add_radiation(
     sea,
     time,
     timestep,
-    wet,  # (h, 6) submersion of the hulls
+    wet,  # (h, 8) submersion of the hulls
     centres,
     out,
 ):

@@ -1,9 +1,9 @@
-"""Added mass: in the engine's mass matrix, and the rest of the water's reaction as a load.
+"""Added mass of bodies, and its place in the engine's mass matrix.
 
-The water opposes a body's motion with -A (dv - du) - C(v - u) (v - u), in the body's axes: v its
-velocity, dv the rate of those components, u the water's there (Fossen 2021, sec. 6.3 and 8.1). The
-part -A dv that goes with the engine's accelerations stands in its mass matrix, so that it cannot be
-unstable.
+The water's kinetic energy is 1/2 s v'A v, with A the added mass of a body that is fully wet, v its
+velocity relative to the water, along its axes, and s its wet share. What goes with the engine's
+accelerations, -s A dv, stands in its mass matrix, so that it cannot be unstable; `reaction` has the
+rest.
 """
 
 from typing import Annotated, NamedTuple
@@ -12,11 +12,9 @@ import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
-from buoyancy_mj.kernels.clip import CX, VOLUME
-from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.multibody import last_dof
-from buoyancy_mj.kernels.vectors import difference, rotate, rotate_back, scale, triple
-from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+from buoyancy_mj.kernels.vectors import difference
+from buoyancy_mj.kernels.wet_share import wet_share
 
 
 class AddedMass(NamedTuple):
@@ -29,6 +27,16 @@ class AddedMass(NamedTuple):
     matrices: Annotated[Doubles, ("n", 36)]
     """Row by row [kg, kg m, kg m^2]: surge, sway, heave, roll, pitch, yaw along the axes of each
     body, about its origin."""
+    hulls: Annotated[Words, ("h",)]
+    """Indices of the hulls of each, one body after the other."""
+    hull_starts: Annotated[Words, ("n + 1",)]
+    """Where those of each body begin, and the end of all."""
+    members: Annotated[Words, ("m",)]
+    """Indices of each body and of all that is welded to it, one body after the other."""
+    member_starts: Annotated[Words, ("n + 1",)]
+    """Where those of each body begin, and the end of all."""
+    slamming: int
+    """1 where the water keeps the momentum that an entry takes."""
 
 
 @njit(cache=True, error_model="numpy")
@@ -43,16 +51,16 @@ def add_inertia(
 
     Returns whether any body was wet.
     """
-    p, g, u = np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    p, g, half, u = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
     changed = False
     for n in range(added_mass.bodies.shape[0]):
         b = added_mass.bodies[n]
-        wet = _wet_part(centres, b, added_mass.volumes[n])
-        if not wet > 0.0:
+        share = wet_share(centres, b, added_mass.volumes[n])
+        if not share > 0.0:
             continue
         changed = True
-        _to_body(bodies, b, p)
-        _transform(added_mass.matrices[n], p, wet, g)
+        set_to_body(bodies, b, p)
+        _transform(added_mass.matrices[n], p, share, half, g)
         i = last_dof(joints, b)
         while i >= 0:
             for k in range(6):
@@ -64,14 +72,8 @@ def add_inertia(
     return changed
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def _wet_part(centres, b, volume):
-    """The part of a body's volume that is wet."""
-    return min(centres[b, VOLUME] / volume, 1.0)
-
-
 @njit(cache=True, error_model="numpy")
-def _to_body(bodies, b, out):
+def set_to_body(bodies, b, out):
     """Write the matrix (6, 6) from MuJoCo's velocities of a body to those along its own axes.
 
     MuJoCo's are rotation, then translation at the root's centre of mass; the body's are at its
@@ -90,15 +92,20 @@ def _to_body(bodies, b, out):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _transform(matrix, p, factor, out):
-    """Write factor p^T A p of a matrix A, row by row (36,), to `out` (6, 6)."""
+def _transform(matrix, p, factor, half, out):
+    """Write factor p^T A p of a matrix A, row by row (36,), to `out` (6, 6); `half` is scratch."""
     for i in range(6):
         for j in range(6):
             total = 0.0
             for k in range(6):
-                for m in range(6):
-                    total += p[k, i] * matrix[6 * k + m] * p[m, j]
-            out[i, j] = factor * total
+                total += matrix[6 * i + k] * p[k, j]
+            half[i, j] = factor * total
+    for i in range(6):
+        for j in range(6):
+            total = 0.0
+            for k in range(6):
+                total += p[k, i] * half[k, j]
+            out[i, j] = total
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -111,99 +118,3 @@ def _add_row(joints, mass_matrix, i, u):
         mass_matrix.M[e] += (
             c[0] * u[0] + c[1] * u[1] + c[2] * u[2] + c[3] * u[3] + c[4] * u[4] + c[5] * u[5]
         )
-
-
-@njit(cache=True, error_model="numpy")
-def add_reaction(
-    added_mass,
-    bodies,
-    joints,
-    sea,  # `sea.Sea`
-    time,  # [s]
-    centres,
-    out,  # (nbody, 6)
-):
-    """Add the reaction about `xipos`, but for the part that goes with the joints' accelerations.
-
-    That part, -A times what the accelerations bring, stands in the mass matrix.
-    """
-    p = np.empty((6, 6))
-    water, rush = np.empty(3), np.empty(3)
-    spin, rate, v, f = np.empty(6), np.empty(6), np.empty(6), np.empty(6)
-    for n in range(added_mass.bodies.shape[0]):
-        b = added_mass.bodies[n]
-        wet = _wet_part(centres, b, added_mass.volumes[n])
-        if not wet > 0.0:
-            continue
-        r = bodies.xmat[b]
-        _to_body(bodies, b, p)
-
-        # what the velocities of the joints bring to the acceleration
-        spin[:] = 0.0
-        i = last_dof(joints, b)
-        while i >= 0:
-            for k in range(6):
-                spin[k] += joints.cdof_dot[i, k] * joints.qvel[i]
-            i = joints.dof_parentid[i]
-        for i in range(6):
-            v[i] = rate[i] = 0.0
-            for k in range(6):
-                v[i] += p[i, k] * bodies.cvel[b, k]
-                rate[i] += p[i, k] * spin[k]
-
-        # the water's velocity and acceleration at the centroid
-        x, y, z = triple(centres, b, CX)
-        set_current(sea.current, sea.level - z, time, water)
-        set_rate(sea.current, time, rush)
-        add_velocity(sea.waves, x, y, z - sea.level, time, water)
-        add_acceleration(sea.waves, x, y, z - sea.level, time, rush)
-        u0, u1, u2 = rotate_back(r, water[0], water[1], water[2])
-        a0, a1, a2 = rotate_back(r, rush[0], rush[1], rush[2])
-
-        # relative to it: the rate of the water's components in axes that turn
-        w0, w1, w2 = v[3], v[4], v[5]
-        rate[0] -= a0 - (w1 * u2 - w2 * u1)
-        rate[1] -= a1 - (w2 * u0 - w0 * u2)
-        rate[2] -= a2 - (w0 * u1 - w1 * u0)
-        v[0], v[1], v[2] = v[0] - u0, v[1] - u1, v[2] - u2
-        _multiply(added_mass.matrices[n], rate, f)
-        _multiply(added_mass.matrices[n], v, spin)
-        _add_coriolis(v, spin, f)
-
-        # minus all that, about the centre of mass
-        fx, fy, fz = scale(-wet, rotate(r, f[0], f[1], f[2]))
-        tx, ty, tz = scale(wet, rotate(r, f[3], f[4], f[5]))
-        x, y, z = difference(bodies.xpos[b], bodies.xipos[b])
-        out[b, 0] += fx
-        out[b, 1] += fy
-        out[b, 2] += fz
-        out[b, 3] += y * fz - z * fy - tx
-        out[b, 4] += z * fx - x * fz - ty
-        out[b, 5] += x * fy - y * fx - tz
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _multiply(matrix, x, out):
-    """Write a matrix, row by row (36,), times a vector (6,) to `out` (6,)."""
-    for i in range(6):
-        total = 0.0
-        for k in range(6):
-            total += matrix[6 * i + k] * x[k]
-        out[i] = total
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _add_coriolis(v, momentum, f):
-    """Add C(v) v = (w x p, v x p + w x h) to `f` (6,).
-
-    w is the rotation in v, and p, h are the momentum A v.
-    """
-    p0, p1, p2 = momentum[0], momentum[1], momentum[2]
-    h0, h1, h2 = momentum[3], momentum[4], momentum[5]
-    w0, w1, w2 = v[3], v[4], v[5]
-    f[0] += w1 * p2 - w2 * p1
-    f[1] += w2 * p0 - w0 * p2
-    f[2] += w0 * p1 - w1 * p0
-    f[3] += v[1] * p2 - v[2] * p1 + w1 * h2 - w2 * h1
-    f[4] += v[2] * p0 - v[0] * p2 + w2 * h0 - w0 * h2
-    f[5] += v[0] * p1 - v[1] * p0 + w0 * h1 - w1 * h0

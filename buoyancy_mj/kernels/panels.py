@@ -31,7 +31,7 @@ def add_panels(
     sea,  # `sea.Sea`
     time,  # [s]
     timestep,  # [s]
-    wet,  # (h, 6) submersion of the hulls
+    wet,  # (h, 8) submersion of the hulls
     out,  # (nbody, 6)
 ):
     """Add the drag of each wet triangle: pressure across it, and skin friction along it.

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from buoyancy_mj.kernels import damping, inertia, panels, pressure, wrenches
+from buoyancy_mj.kernels import damping, inertia, panels, pressure, reaction, wrenches
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.hulls import Hulls
@@ -55,12 +55,13 @@ class Causes(NamedTuple):
     drag: Annotated[Doubles, ("nbody", 6)]
     radiation: Annotated[Doubles, ("nbody", 6)]
     added_mass: Annotated[Doubles, ("nbody", 6)]
+    slamming: Annotated[Doubles, ("nbody", 6)]
 
 
 class Record(NamedTuple):
     """What a pass leaves."""
 
-    wet: Annotated[Doubles, ("h", 6)]
+    wet: Annotated[Doubles, ("h", 8)]
     """Submersion of each hull, see `clip.submerge_hulls`."""
     centres: Annotated[Doubles, ("nbody", 4)]
     """Submerged volume of each body [m^3] and its centroid [m]."""
@@ -197,16 +198,19 @@ def add_radiation(arrays):
 
 @register_jitable
 def add_reaction(arrays):
-    """What added mass does beside its inertia."""
+    """What added mass does beside its inertia, and what the water keeps of it in an entry."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
-    inertia.add_reaction(
+    reaction.add_reaction(
         loads.added_mass,
         engine.bodies,
         engine.joints,
         loads.sea,
         engine.time,
+        engine.option.timestep,
+        record.wet,
         record.centres,
         record.causes.added_mass,
+        record.causes.slamming,
     )
 
 

@@ -47,6 +47,8 @@ def resolve_added_mass(
     hulls: Sequence[Hull],
     density: float,
     source: str | Mapping[str, ArrayLike] | None = "model",
+    *,
+    slamming: bool = False,
 ) -> AddedMass:
     """Find the added mass of the bodies that have hulls.
 
@@ -55,10 +57,12 @@ def resolve_added_mass(
         hulls: its hulls.
         density: of the water [kg/m^3], for estimates.
         source: one of `SOURCES`, or matrices (6, 6) or diagonals (6,) by the name of the body.
+        slamming: whether the water keeps the momentum that an entry takes.
 
     Raises:
         ModelError: an unknown source or body; a matrix of another size, not finite, not symmetric
-            or not positive; or one that does not fit into what MuJoCo keeps of a body's inertia.
+            or not positive; one that does not fit into what MuJoCo keeps of a body's inertia; or
+            slamming where no body has added mass.
     """
     check_source(source)
 
@@ -73,12 +77,31 @@ def resolve_added_mass(
     bodies = sorted(matrices)
     for body in bodies:
         _check_fit(model, body, matrices[body])
+    if slamming and not bodies:
+        raise ModelError(
+            "slamming is true, and no body has added mass; give the model numerics "
+            "'added_mass:BODY', or choose added_mass='estimate'"
+        )
     volumes = [sum(hull.displaced_volume for hull in by_body[body]) for body in bodies]
+    owners = np.array([hull.body for hull in hulls])
+    own_hulls, hull_starts = _join([np.flatnonzero(owners == body) for body in bodies])
+    members, member_starts = _join([np.flatnonzero(model.body_weldid == body) for body in bodies])
     return AddedMass(
         bodies=np.array(bodies, np.int64),
         volumes=np.array(volumes, float),
         matrices=np.array([matrices[body].ravel() for body in bodies]).reshape(-1, 36),
+        hulls=own_hulls,
+        hull_starts=hull_starts,
+        members=members,
+        member_starts=member_starts,
+        slamming=int(slamming),
     )
+
+
+def _join(groups: Sequence[NDArray[np.int64]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Groups of indices one after the other, and where each begins, and the end of all."""
+    starts = np.cumsum([0, *(len(group) for group in groups)])
+    return np.concatenate([np.zeros(0, np.int64), *groups]).astype(np.int64), starts
 
 
 def estimate_added_mass(hulls: Sequence[Hull], density: float) -> NDArray[np.float64]:

@@ -91,7 +91,7 @@ def run_steps(
     """Run a scene as `run` does, and yield the engine's state after each step.
 
     Yields:
-        The water, the data with the poses of the step's beginning, and the submersions (h, 6) at
+        The water, the data with the poses of the step's beginning, and the submersions (h, 8) at
         these poses.
     """
     model, data, _ = assemble(scene)

@@ -12,6 +12,7 @@ from buoyancy_mj.sea.spectra import PiersonMoskowitzSea
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import LENGTHS, RegularWave, Wave
 from buoyancy_mj.settings.settings import Settings
+from buoyancy_mj.settings.tables import convert
 from buoyancy_mj.settings.texts import format_table, format_value, parse_table, parse_value
 from buoyancy_mj.settings.toml import (
     CURRENTS,
@@ -27,7 +28,7 @@ WATER = tuple(field.name for field in dataclasses.fields(Water))
 """Keys of the plugin that describe the sea: the fields of `Water`."""
 SELECTION = tuple(field.name for field in dataclasses.fields(Selection))
 """Keys that choose geoms: the fields of `Selection`."""
-KEYS = (*WATER, "method", "pressure", "damping", "added_mass", *SELECTION)
+KEYS = (*WATER, "method", "pressure", "damping", "added_mass", "slamming", *SELECTION)
 """All keys of the plugin that hold settings."""
 INSTANCE = "instance"
 """Key that holds the name of the instance where `add_water` put it. If the model has another name
@@ -53,6 +54,7 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
     """
     words = {key: text.strip() for key, text in texts.items() if text.strip()}
     method = parse_table(words.get("method", "exact"), f"{where}: method")
+    slamming = parse_value(words.get("slamming", "false"), f"{where}: slamming")
     damping = _parse_damping(words.get("damping", "true"), f"{where}: damping")
     selection = {
         key: split_words(words[key], f"{where}: {key}") for key in SELECTION if key in words
@@ -62,6 +64,7 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
         method=method_from_table(method, f"{where}: method"),
         pressure=words.get("pressure", "archimedes"),
         added_mass=words.get("added_mass", "model"),
+        slamming=convert(slamming, bool, f"{where}: slamming"),
         damping=damping_from_table(damping, f"{where}: damping"),
         selection=selection_from_table(selection, where),
     )
@@ -95,6 +98,7 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         "pressure": settings.pressure,
         "damping": _format_damping(settings.damping),
         "added_mass": settings.added_mass or "none",
+        "slamming": format_value(settings.slamming),
         **{key: join_words(getattr(settings.selection, key) or ()) for key in SELECTION},
     }
     return {key: text for key, text in texts.items() if text}

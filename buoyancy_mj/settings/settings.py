@@ -13,6 +13,7 @@ from buoyancy_mj.loads.damping import Damping, Panels
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.methods import Method, parse_method
+from buoyancy_mj.values import read_truth
 
 PRESSURES = ("archimedes", "hydrostatic", "froude-krylov")
 """Models of the pressure in waves."""
@@ -50,6 +51,9 @@ class Settings:
     """Where added mass comes from. 'model' takes the numerics 'added_mass:BODY' of 6 or 36 numbers
     from the model's `<custom>`. 'estimate' adds an estimate for bodies without. 'none' leaves it
     out. Matrices (6, 6) or diagonals (6,) by the name of the body replace all these."""
+    slamming: bool = False
+    """Whether the water keeps the momentum that added mass takes as a body enters. Without it half
+    of that is given back at once, and energy is kept."""
     selection: Selection = Selection()
     """Which geoms displace water, and as what."""
 
@@ -70,6 +74,7 @@ class Settings:
                 "it must be Selection(geoms=..., hull=..., fill=...)"
             )
         check_source(self.added_mass)
+        self._check_slamming()
 
         # names
         object.__setattr__(self, "method", parse_method(self.method))
@@ -78,7 +83,7 @@ class Settings:
                 f"pressure is {describe(self.pressure)}; {choices(self.pressure, PRESSURES)}"
             )
 
-        # the other methods know neither pressure nor triangles
+        # the other methods know neither pressure nor waterplane nor triangles
         if isinstance(self.method, Exact):
             return
         if self.pressure != "archimedes":
@@ -86,10 +91,24 @@ class Settings:
                 f"pressure '{self.pressure}' needs the method 'exact', not '{self.method.name}', "
                 "which knows volumes alone"
             )
+        if self.slamming:
+            raise MethodError(
+                f"slamming needs the method 'exact', not '{self.method.name}', "
+                "which knows no waterplane"
+            )
         if self.damping is not None and isinstance(self.damping.viscous, Panels):
             raise MethodError(
                 f"drag by panels needs the method 'exact', not '{self.method.name}', "
                 "which knows no triangles"
+            )
+
+    def _check_slamming(self) -> None:
+        """Refuse slamming that is no truth value, or that no added mass could bring."""
+        object.__setattr__(self, "slamming", read_truth(ModelError, "slamming", self.slamming))
+        if self.slamming and (self.added_mass is None or self.added_mass == "none"):
+            raise ModelError(
+                f"slamming is true and added_mass is {describe(self.added_mass)}; slamming is what "
+                "added mass does in an entry: state or estimate it, or leave slamming out"
             )
 
 
@@ -100,6 +119,7 @@ class Options(TypedDict, total=False):
     pressure: str
     damping: Damping | None
     added_mass: str | Mapping[str, ArrayLike] | None
+    slamming: bool
     selection: Selection
 
 

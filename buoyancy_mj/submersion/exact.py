@@ -96,7 +96,7 @@ class PackedHulls:
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
         """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
-        """Last submersion of each hull (h, 6), see `methods.Packed.results`."""
+        """Last submersion of each hull (h, 8), see `methods.Packed.results`."""
 
     def new_scratches(self, count: int) -> list[Scratch]:
         """Arrays for kernels to work in, for so many threads."""

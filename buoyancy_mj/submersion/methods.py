@@ -23,7 +23,7 @@ class Packed(Protocol):
     """Hulls packed by a method, ready to be submerged again and again."""
 
     results: NDArray[np.float64]
-    """Last submersion of each hull (h, 6); `kernels.clip` names the columns.
+    """Last submersion of each hull (h, 8); `kernels.clip` names the columns.
 
     They are the volume [m^3], its centroid (3) [m] in the world frame (NaN when dry), the wetted
     area and the waterplane area [m^2] (NaN from a method that knows no areas)."""

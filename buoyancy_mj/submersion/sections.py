@@ -93,7 +93,7 @@ class PackedSections:
         self.volumes = hulls.volumes
         """Volume that each hull displaces when it is under water (h,) [m^3]."""
         self.results = np.zeros((len(hulls.meshes), clip.COLUMNS))
-        """Last submersion (h, 6): volume and centroid; the areas are not known (NaN)."""
+        """Last submersion (h, 8): volume and centroid; the areas are not known (NaN)."""
 
         # meshes, and the middles of their bounding boxes
         self._meshes = [mesh.compact for mesh in hulls.meshes]

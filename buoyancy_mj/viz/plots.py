@@ -21,6 +21,7 @@ COLOURS: Mapping[str, Colour] = {
     "drag": (240, 90, 60),
     "radiation": (240, 150, 200),
     "added_mass": (170, 120, 230),
+    "slamming": (190, 230, 90),
 }
 """Colours of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)
