@@ -2,6 +2,7 @@
 
 import ctypes
 import threading
+import types
 
 import mujoco
 import numpy as np
@@ -345,12 +346,15 @@ def test_gravity_that_is_turned_sideways_while_it_runs_is_an_error_of_the_engine
 
 
 def test_masses_timestep_and_gravity_are_read_in_each_pass():
+    # a regular wave would take its length or its frequency from gravity as the water is made
+    water = Water(density=1025.0, waves=types.SimpleNamespace(rows=SEA.rows[:, :6]))
+
     def end(change_after_construction):
         model, data = raft("Euler")
         buoyancy = (
             None
             if not change_after_construction
-            else Buoyancy(model, SEA, damping=Damping(viscous=Silhouette(coefficient=100.0)))
+            else Buoyancy(model, water, damping=Damping(viscous=Silhouette(coefficient=100.0)))
         )
         model.body_mass[:] *= 0.5
         model.body_inertia[:] *= 0.5
@@ -359,7 +363,7 @@ def test_masses_timestep_and_gravity_are_read_in_each_pass():
         mujoco.mj_setConst(model, data)
         # linear damping is estimated from gravity
         buoyancy = buoyancy or Buoyancy(
-            model, SEA, damping=Damping(viscous=Silhouette(coefficient=100.0))
+            model, water, damping=Damping(viscous=Silhouette(coefficient=100.0))
         )
         buoyancy._acting.load_model.arrays.damping.linear[:] = 1.0
         with buoyancy.installed(native=True):

@@ -212,7 +212,7 @@ class RegularWave:
             )
 
         # by the frequency that the water sees, from which its length follows as in still water
-        (sigma,) = intrinsic_frequency(np.array([k]), self.depth, self.gravity)
+        (sigma,) = intrinsic_frequency(np.array([k]), self.depth, or_default(self.gravity))
         seen = {"frequency": float(sigma) / (2.0 * math.pi), "period": math.nan}
         try:
             return dataclasses.replace(self, **seen, wavelength=math.nan, frame="water")
