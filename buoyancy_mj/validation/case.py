@@ -51,3 +51,5 @@ class Case:
     """Why rows fail, where some do."""
     draw: Callable[[], Figure] | None = None
     """Draws the picture, if the case has one."""
+    loads: str = ""
+    """Which loads act."""

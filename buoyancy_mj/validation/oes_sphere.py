@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from buoyancy_mj.loads.damping import Damping
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
@@ -89,7 +90,14 @@ def decay(height: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     def start(data: mujoco.MjData) -> None:
         data.qpos[2] = height
 
-    return follow(_load_sphere(), Water(), 20.0, read=lambda data: float(data.qpos[2]), start=start)
+    return follow(
+        _load_sphere(),
+        Water(),
+        20.0,
+        read=lambda data: float(data.qpos[2]),
+        start=start,
+        damping=Damping(viscous=None),
+    )
 
 
 def _compare_decay(height: float) -> Sequence[Row]:
@@ -203,18 +211,20 @@ CASES = (
         "A sphere of 10 m released 1 m above its rest",
         TASK_10,
         "`models/oes_sphere` has one added mass and one damping, those at its natural period. "
-        "The codes have them by frequency.",
+        "The codes have them by frequency. Viscous drag is left out, as it is in the codes.",
         lambda: _compare_decay(1.0),
+        loads="buoyancy, given radiation damping and given added mass",
     ),
     Case(
         "sphere_decay_5m",
         "The sphere released 5 m above its rest, just out of the water",
         TASK_10,
-        "The model is the same.",
+        "The model is the same, without viscous drag.",
         lambda: _compare_decay(5.0),
-        "Added mass and damping are those of small motions. The sphere enters the water without "
-        "the mass that an entry gathers from its first touch on, and so is early.",
+        "Added mass and damping are those of small motions. A share by volume gathers the water's "
+        "mass later than the sphere's first touch does, and so the sphere is early.",
         _draw_decay,
+        "buoyancy, given radiation damping and given added mass",
     ),
     Case(
         "sphere_response",
@@ -228,6 +238,7 @@ CASES = (
         "That is too coarse where waves are short beside the sphere, or where it resonates with "
         "little damping.",
         _draw_response,
+        "buoyancy, wave pressure, estimated drag, given radiation damping and given added mass",
     ),
 )
 """In the order of the page."""

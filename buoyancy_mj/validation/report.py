@@ -12,6 +12,7 @@ from buoyancy_mj.validation import (
     bluerov2_heavy,
     coefficients,
     currents,
+    entries,
     oes_sphere,
     otter,
     remus_100,
@@ -26,6 +27,7 @@ _MODULES = (
     remus_100,
     otter,
     coefficients,
+    entries,
     terminal_speeds,
     waves,
     currents,
@@ -117,6 +119,7 @@ def _render_case(case: Case, rows: Sequence[Row]) -> str:
         f"## {case.title}\n",
         f"Published: {case.source}.\n",
         f"Here: {case.setup}\n",
+        *([f"Loads: {case.loads}.\n"] if case.loads else []),
         f"| {' | '.join(HEADER)} |",
         "| --- | ---: | ---: | ---: | ---: | --- |",
     ]
