@@ -25,14 +25,14 @@ class Silhouette:
     hulls. C has two parts, of what is seen from outside:
 
     - Pressure: `coefficient` times the mean square cosine between the normals and the axis. It
-      falls by 18 % from 0.75 to 1.7 lengths over widths, the width that of a circle as large as the
+      falls by 18 % from 0.55 to 2.2 lengths over widths, the width that of a circle as large as the
       silhouette: flow that separates at a blunt face closes on the sides of a longer body, 1.73
-      diameters behind the face of a cylinder (JSME Int. J. B 39(2):354, 1996). Behind it C was
-      measured as 1.10, 0.93, 0.83, 0.85 at 0.5, 1, 2 and 4 diameters (Munson et al., Fundamentals
-      of Fluid Mechanics, 6th ed., fig. 9.20).
+      diameters behind the face of a cylinder (JSME Int. J. B 39(2):354, 1996). C of cylinders along
+      the flow was measured as 1.1, 0.93, 0.83, 0.85 at 0.5, 1, 2 and 4 diameters (Munson et al.,
+      Fundamentals of Fluid Mechanics, 6th ed., fig. 9.20).
     - Friction: `friction` times the area of the sides over A.
 
-    C is 1.05 for a cube face-on, 0.52 for a sphere, 0.21 for an ellipsoid four times as long as
+    C is 1.04 for a cube face-on, 0.52 for a sphere, 0.21 for an ellipsoid four times as long as
     wide and 0.98 for a cylinder as long. Measured were 1.05 to 1.07, 0.47, 0.25 and 0.87 (White,
     Fluid Mechanics, 8th ed., table 7.3, after Hoerner, Fluid-Dynamic Drag, 1965, ch. 3).
 

@@ -12,7 +12,7 @@ from buoyancy_mj.meshes.mesh import TriMesh
 
 CELLS = 200
 """Cells along each side of the grid on which a silhouette is measured."""
-REATTACHING = (0.75, 1.7)
+REATTACHING = (0.55, 2.2)
 """Length over width from which the flow along a blunt body begins to close on its sides, and from
 which it has closed."""
 RELIEF = 0.18

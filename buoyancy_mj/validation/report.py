@@ -14,12 +14,22 @@ from buoyancy_mj.validation import (
     oes_sphere,
     otter,
     remus_100,
+    roll_decay,
     terminal_speeds,
     waves,
 )
 from buoyancy_mj.validation.case import Case, Row
 
-_MODULES = (oes_sphere, bluerov2_heavy, remus_100, otter, coefficients, terminal_speeds, waves)
+_MODULES = (
+    oes_sphere,
+    bluerov2_heavy,
+    remus_100,
+    otter,
+    roll_decay,
+    coefficients,
+    terminal_speeds,
+    waves,
+)
 CASES: Mapping[str, Case] = {case.name: case for module in _MODULES for case in module.CASES}
 """The cases by name, in the order of the page."""
 HEADER = ("quantity", "published", "here", "difference", "allowed", "verdict")
