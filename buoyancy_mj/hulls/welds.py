@@ -25,9 +25,7 @@ class Place(NamedTuple):
 
     def after(self, inner: "Place") -> "Place":
         """The place of what has a place in the frame of this one."""
-        return Place(
-            self.rotation @ inner.rotation, self.position + self.rotation @ inner.position
-        )
+        return Place(self.rotation @ inner.rotation, self.position + self.rotation @ inner.position)
 
     def inverse(self) -> "Place":
         """The place of the other body in this one's frame."""
@@ -73,7 +71,9 @@ def group_welded_bodies(model: mujoco.MjModel, bodies: Sequence[int]) -> tuple[W
     for label in dict.fromkeys(labels[ends[:, 0]].tolist()):
         wanted = [body for body in sorted(bodies) if labels[body] == label]
         if len(wanted) > 1:
-            held = [weld for weld, (end, _) in zip(welds, ends, strict=True) if labels[end] == label]
+            held = [
+                weld for weld, (end, _) in zip(welds, ends, strict=True) if labels[end] == label
+            ]
             places = _find_places(model, data, held, wanted[0])
             groups.append(
                 WeldedGroup(

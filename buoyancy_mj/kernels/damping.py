@@ -41,6 +41,8 @@ class WeldedGroups(NamedTuple):
     """As `DampingArrays.linear`, of all members as one body, along the axes of the first."""
     quadratic: Annotated[Doubles, ("g", 6)]
     """As `DampingArrays.quadratic`, likewise."""
+    lengths: Annotated[Doubles, ("g",)]
+    """Length of all members as one body [m], for drag by panels."""
 
 
 class DampingArrays(NamedTuple):

@@ -59,7 +59,10 @@ def add_panels(
     for n in range(damping.bodies.shape[0]):
         if damping.group[n] >= 0 and holds(welded, damping.group[n], active):
             continue
-        fastest = _sum_body(damping, n, ALONE, hulls, owners, bodies, geoms, sea, time, wet, f)
+        length = damping.panels[n, LENGTH]
+        fastest = _sum_body(
+            damping, n, ALONE, length, hulls, owners, bodies, geoms, sea, time, wet, f
+        )
         if fastest >= 0.0:
             b = damping.bodies[n]
             spin = bodies.cvel[b]
@@ -75,9 +78,11 @@ def _add_group(damping, g, hulls, owners, bodies, geoms, sea, time, timestep, we
     rows = damping.welded.rows[damping.welded.starts[g] : damping.welded.starts[g + 1]]
     part, f, motion, parts = np.empty(6), np.zeros(6), np.empty(6), np.empty((rows.shape[0], 10))
     whole = gather_group(damping, bodies, rows, parts)
-    fastest = -1.0
+    length, fastest = damping.welded.lengths[g], -1.0
     for n in rows:
-        speed = _sum_body(damping, n, TOGETHER, hulls, owners, bodies, geoms, sea, time, wet, part)
+        speed = _sum_body(
+            damping, n, TOGETHER, length, hulls, owners, bodies, geoms, sea, time, wet, part
+        )
         if speed < 0.0:
             continue
         fastest = max(fastest, speed)
@@ -97,7 +102,7 @@ def _add_group(damping, g, hulls, owners, bodies, geoms, sea, time, timestep, we
 
 
 @njit(cache=True, error_model="numpy")
-def _sum_body(damping, n, company, hulls, owners, bodies, geoms, sea, time, wet, f):
+def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, time, wet, f):
     """Write the force on a body, and the torque about its centre of mass, to `f` (6,).
 
     Returns the greatest speed of its hulls relative to the water; -1 if it has no wet panels.
@@ -123,7 +128,7 @@ def _sum_body(damping, n, company, hulls, owners, bodies, geoms, sea, time, wet,
             + (velocity[2] - water[2]) ** 2
         )
         fastest = max(fastest, speed)
-        reynolds = speed * damping.panels[n, LENGTH] / damping.panels[n, VISCOSITY]
+        reynolds = speed * length / damping.panels[n, VISCOSITY]
         friction = 0.075 / (math.log10(max(reynolds, LEAST_REYNOLDS)) - 2.0) ** 2
         _add_hull(
             damping.panels[n],

@@ -18,6 +18,7 @@ from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.welds import WeldedGroup, group_welded_bodies
 from buoyancy_mj.kernels.damping import DampingArrays, WeldedGroups
 from buoyancy_mj.kernels.hulls import Hulls
+from buoyancy_mj.kernels.panels import LENGTH
 from buoyancy_mj.loads.damping import Damping, Panels, Silhouette
 from buoyancy_mj.loads.exposure import measure_exposure
 from buoyancy_mj.loads.matrices import check_eigenvalues
@@ -118,6 +119,7 @@ def _arrange_groups(
         weld_starts=np.cumsum([0, *(len(group.welds) for group in groups)]),
         linear=np.array([drag.linear for drag in drags]).reshape(-1, 6),
         quadratic=np.array([drag.quadratic for drag in drags]).reshape(-1, 6),
+        lengths=np.array([drag.panels[LENGTH] for drag in drags]),
     )
 
 
@@ -160,29 +162,26 @@ def _resolve_viscous(
     estimated = [body for body in shapes if body not in given and damping.viscous is not None]
     groups = group_welded_bodies(model, estimated)
     together = [_join_shapes(shapes, group) for group in groups]
-    whole_of = {
-        body: whole
-        for group, whole in zip(groups, together, strict=True)
-        for body in group.places
-    }
     drags = []
     for body, shape in shapes.items():
-        if damping.viscous is None:
-            drag = _Viscous()
-        elif body in given:
+        if body in given and damping.viscous is not None:
             drag = _read_viscous(model, body, linear.get(body), quadratic.get(body))
-        elif isinstance(damping.viscous, Panels):
-            drag = _prepare_panels(damping.viscous, whole_of.get(body, shape), density)
         else:
-            drag = _estimate_viscous(damping.viscous, shape, density, gravity)
+            drag = _estimate(damping.viscous, shape, density, gravity)
         drags.append(drag)
-    of_groups = [
-        _estimate_viscous(damping.viscous, whole, density, gravity)
-        if isinstance(damping.viscous, Silhouette)
-        else _Viscous()
-        for whole in together
-    ]
+    of_groups = [_estimate(damping.viscous, whole, density, gravity) for whole in together]
     return drags, groups, of_groups
+
+
+def _estimate(
+    viscous: Silhouette | Panels | None, shape: _Shape, density: float, gravity: float
+) -> _Viscous:
+    """Drag as the user chose to estimate it."""
+    if viscous is None:
+        return _Viscous()
+    if isinstance(viscous, Panels):
+        return _prepare_panels(viscous, shape, density)
+    return _estimate_viscous(viscous, shape, density, gravity)
 
 
 def _join_shapes(shapes: Mapping[int, _Shape], group: WeldedGroup) -> _Shape:

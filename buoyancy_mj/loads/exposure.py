@@ -34,7 +34,9 @@ def measure_exposure(
     """
     # the hulls that move together, in one frame
     exposed = np.ones((len(packed.faces), 2))
-    places: Mapping[int, Place] = {b: place for group in groups for b, place in group.places.items()}
+    places: Mapping[int, Place] = {
+        b: place for group in groups for b, place in group.places.items()
+    }
     group_of = {b: i for i, group in enumerate(groups) for b in group.places}
     labels = [group_of.get(hull.body, -1 - hull.body) for hull in hulls]
     for label in dict.fromkeys(labels):
@@ -71,7 +73,8 @@ class _Shape:
         for other in others:
             for part in _CLOSE:
                 self._cover(other, part * min(self.diagonal, other.diagonal), covered)
-        return 1.0 - covered.mean(axis=1)
+        exposed: NDArray[np.float64] = 1.0 - covered.mean(axis=1)
+        return exposed
 
     def _cover(self, other: "_Shape", gap: float, covered: NDArray[np.bool_]) -> None:
         """Mark the points of faces (f, p) before which another hull lies within a gap [m]."""

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from buoyancy_mj.loads.damping import Damping
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
@@ -83,19 +84,28 @@ DECAYS = {
 
 
 @functools.cache
-def decay(height: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def decay(
+    height: float, damping: Damping = Damping()
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times (n,) [s] and heights (n,) [m] of the sphere after its release at a height [m]."""
 
     def start(data: mujoco.MjData) -> None:
         data.qpos[2] = height
 
-    return follow(_load_sphere(), Water(), 20.0, read=lambda data: float(data.qpos[2]), start=start)
+    return follow(
+        _load_sphere(),
+        Water(),
+        20.0,
+        read=lambda data: float(data.qpos[2]),
+        start=start,
+        damping=damping,
+    )
 
 
-def _compare_decay(height: float) -> Sequence[Row]:
+def _compare_decay(height: float, damping: Damping = Damping()) -> Sequence[Row]:
     """Compare the decay after a release at a height [m]."""
     published = DECAYS[height]
-    times, heights = decay(height)
+    times, heights = decay(height, damping)
 
     # the level is crossed in time
     rows = [
@@ -205,6 +215,7 @@ CASES = (
         "`models/oes_sphere` has one added mass and one damping, those at its natural period. "
         "The codes have them by frequency.",
         lambda: _compare_decay(1.0),
+        loads=("buoyancy", "drag: estimated", "radiation", "added_mass"),
     ),
     Case(
         "sphere_decay_5m",
@@ -215,6 +226,17 @@ CASES = (
         "Added mass and damping are those of small motions. The sphere enters the water without "
         "the mass that an entry gathers from its first touch on, and so is early.",
         _draw_decay,
+        ("buoyancy", "drag: estimated", "radiation", "added_mass"),
+    ),
+    Case(
+        "sphere_decay_5m_undragged",
+        "The same without the estimated drag",
+        TASK_10,
+        "The model is the same, with radiation damping alone to slow it down.",
+        lambda: _compare_decay(5.0, Damping(viscous=None)),
+        "The fall without drag dives deeper than the published one: what holds in the case above "
+        "does so since the estimated drag takes what the added mass leaves too much.",
+        loads=("buoyancy", "radiation", "added_mass"),
     ),
     Case(
         "sphere_response",
@@ -228,6 +250,7 @@ CASES = (
         "That is too coarse where waves are short beside the sphere, or where it resonates with "
         "little damping.",
         _draw_response,
+        ("buoyancy", "wave_pressure", "drag: estimated", "radiation", "added_mass"),
     ),
 )
 """In the order of the page."""

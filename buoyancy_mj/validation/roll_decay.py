@@ -230,10 +230,16 @@ CASES = (
         "displacement, centre of gravity and metacentric height. Its inertia in the water is the "
         "measured one, 1.167 of the dry (potential flow has 1.143), and its damping without speed "
         "is fitted to run 21337. Predicted are the restoring, which makes the period fall with the "
-        "amplitude, run 21338, and the damping by the hull's lift at speed, by Ikeda's method (ITTC "
-        "7.5-02-07-04.5). Run 21340 has more of it than that, by an eighth.",
+        "amplitude, run 21338, and the damping by the hull's lift at speed, by Ikeda's method "
+        "(ITTC 7.5-02-07-04.5).",
         _compare,
         draw=_draw,
+        loads=(
+            "buoyancy",
+            "drag: roll damping as the model states it",
+            "radiation: in heave",
+            "added_mass: in heave and roll",
+        ),
     ),
 )
 """In the order of the page."""
