@@ -52,24 +52,34 @@ def see(u, v, w, faces, low, step, seen):
     """Write the face that a ray along w meets first, and the one that it meets last.
 
     Rays run through the centres of cells, low + (i + 1/2) step along u and v. The indices go to
-    `seen` (2, n, m); it keeps what it holds where a ray meets nothing.
+    `seen` (2, n, m); it keeps what it holds where a ray meets nothing. A ray enters a closed mesh
+    where faces wind right, and leaves it where they wind left.
     """
-    heights = np.empty(seen.shape)
-    heights[0], heights[1] = math.inf, -math.inf
+    depths = np.full(seen.shape, math.inf)
     for f in range(faces.shape[0]):
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        twice = (u[j] - u[i]) * (v[k] - v[i]) - (u[k] - u[i]) * (v[j] - v[i])
+        if twice == 0.0:
+            continue
+        side = int(twice > 0.0)
+
+        # its plane, turned so that what is met first or last is least
+        sign = 1.0 if side == 0 else -1.0
+        along_u = sign * ((w[j] - w[i]) * (v[k] - v[i]) - (w[k] - w[i]) * (v[j] - v[i])) / twice
+        along_v = sign * ((u[j] - u[i]) * (w[k] - w[i]) - (u[k] - u[i]) * (w[j] - w[i])) / twice
+        lowest, highest = sign * w[i], sign * w[i]
+        for corner in (j, k):
+            lowest, highest = min(lowest, sign * w[corner]), max(highest, sign * w[corner])
         first_u, last_u = _cells(u[i], u[j], u[k], low[0], step[0], seen.shape[1])
         first_v, last_v = _cells(v[i], v[j], v[k], low[1], step[1], seen.shape[2])
         for p in range(first_u, last_u + 1):
+            x = low[0] + (p + 0.5) * step[0]
             for q in range(first_v, last_v + 1):
-                x, y = low[0] + (p + 0.5) * step[0], low[1] + (q + 0.5) * step[1]
-                if _covers(u, v, faces[f], x, y) == 0:
-                    continue
-                height = _height(u, v, w, faces[f], x, y)
-                if height < heights[0, p, q]:
-                    heights[0, p, q], seen[0, p, q] = height, f
-                if height > heights[1, p, q]:
-                    heights[1, p, q], seen[1, p, q] = height, f
+                y = low[1] + (q + 0.5) * step[1]
+                depth = sign * w[i] + along_u * (x - u[i]) + along_v * (y - v[i])
+                depth = min(max(depth, lowest), highest)
+                if depth < depths[side, p, q] and _covers(u, v, faces[f], x, y) != 0:
+                    depths[side, p, q], seen[side, p, q] = depth, f
 
 
 @njit(cache=True, error_model="numpy")
