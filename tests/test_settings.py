@@ -110,8 +110,8 @@ def test_a_water_that_is_more_than_its_text_does_not_fit_into_a_model():
 def test_the_keys_of_damping_are_listed_with_the_kinds():
     with pytest.raises(
         buoyancy_mj.SceneError,
-        match="unknown key 'panels'; possible: coefficient, kind, linear_froude, radiation, "
-        "where kind is one of silhouette, panels, none",
+        match="unknown key 'panels'; possible: coefficient, friction, kind, linear_froude, "
+        "radiation, where kind is one of silhouette, panels, none",
     ):
         read_scene(catalog.scenes()["auv_waves"], ["damping.panels=true"])
 

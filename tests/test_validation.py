@@ -11,6 +11,7 @@ import pytest
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
+from buoyancy_mj import Buoyancy
 from buoyancy_mj.cli import app
 from buoyancy_mj.validation import report
 from buoyancy_mj.validation.case import Case, Row
@@ -43,8 +44,20 @@ def read_rows(section):
         for name in report.CASES
     ],
 )
-def test_the_page_shows_what_a_case_computes(name):
+def test_the_page_shows_what_a_case_computes(name, monkeypatch):
+    # what acts in its runs, unless another test has run it before
+    acting, begin = set(), Buoyancy.__init__
+
+    def note(self, *args, **options):
+        begin(self, *args, **options)
+        # where nothing is viscous, drag is a row of zeros
+        damping = self.settings.damping
+        acting.update(c for c in self.causes if c != "drag" or damping.viscous is not None)
+
+    monkeypatch.setattr(Buoyancy, "__init__", note)
     rows = report.CASES[name].run()
+    if acting:
+        assert {load.partition(":")[0] for load in report.CASES[name].loads} == acting
     cells = read_rows(read_sections()[name])
     assert len(cells) == len(rows)
     for row, (quantity, published, computed, _, tolerance, verdict) in zip(
@@ -74,6 +87,7 @@ def test_the_page_has_every_case_and_its_picture():
         assert section.startswith(f"{case.title}\n")
         assert f"Published: {case.source}." in section
         assert f"Here: {case.setup}" in section
+        assert ("Acting: " in section) == bool(case.loads)
         if case.draw is not None:
             assert f"![{case.title}]({report.PICTURES}/{name}.png)" in section
             assert (PAGE.parent / report.PICTURES / f"{name}.png").stat().st_size > 1000
@@ -106,6 +120,15 @@ def test_rows_hold_within_what_is_allowed():
         "1 %",
         "**fails**",
     )
+
+
+def test_a_section_says_which_loads_act():
+    def run():
+        return [Row("a [m]", 2.0, 2.0, 0.01)]
+
+    case = Case("x", "T", "S", "So.", run, loads=("buoyancy", "added_mass", "drag: estimated"))
+    assert "\nActing: buoyancy, added mass, drag (estimated).\n" in report._render_case(case, run())
+    assert "Acting" not in report._render_case(Case("x", "T", "S", "So.", run), run())
 
 
 def test_the_page_is_written_with_its_pictures(tmp_path, monkeypatch):

@@ -35,8 +35,11 @@ _PROBE = """
 <mujoco>
   <option timestep="0.00390625" gravity="0 0 -7.25"/>
   <worldbody>
-    <body><freejoint/><geom type="box" size="1 2 3"/><body><joint/><geom size="1"/></body></body>
+    <body name="a">
+      <freejoint/><geom type="box" size="1 2 3"/><body><joint/><geom size="1"/></body>
+    </body>
   </worldbody>
+  <equality><weld body1="a"/></equality>
 </mujoco>
 """
 """A small model in which every array that is looked at has something in it."""

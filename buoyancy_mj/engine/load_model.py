@@ -139,7 +139,13 @@ def build_load_model(
         owners=owners,
         bodies=np.unique(owners),
         sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
-        damping=resolve_damping(damping, model, hulls, water.density)
+        damping=resolve_damping(
+            damping,
+            model,
+            hulls,
+            water.density,
+            packed.hulls if isinstance(packed, PackedHulls) else None,
+        )
         if damping
         else empty(DampingArrays),
         added_mass=resolve_added_mass(

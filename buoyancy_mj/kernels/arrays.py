@@ -21,6 +21,7 @@ from numpy.typing import DTypeLike
 Doubles = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 Words = np.ndarray[tuple[Any, ...], np.dtype[np.int64]]
 Int32s = np.ndarray[tuple[Any, ...], np.dtype[np.int32]]
+Truths = np.ndarray[tuple[Any, ...], np.dtype[np.bool_]]
 Corners = np.ndarray[tuple[Any, ...], np.dtype[np.uint32]]
 """Unsigned, since Numba asks of a signed index whether it counts from the end."""
 T = TypeVar("T", bound=tuple[Any, ...])

@@ -1,4 +1,4 @@
-"""What slows bodies down in water, by coefficients: damping, and the waves that they make."""
+"""What slows bodies down in water, by coefficients of bodies and of what welds hold together."""
 
 import math
 from typing import Annotated, NamedTuple
@@ -7,8 +7,15 @@ import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
-from buoyancy_mj.kernels.clip import CX, VOLUME, WATERPLANE_AREA
+from buoyancy_mj.kernels.clip import CX, VOLUME
 from buoyancy_mj.kernels.currents import set_current
+from buoyancy_mj.kernels.rigid import (
+    find_inertias,
+    find_motion,
+    gather_group,
+    rigid_body,
+    share,
+)
 from buoyancy_mj.kernels.vectors import difference, rotate, triple
 from buoyancy_mj.kernels.waves import add_velocity
 
@@ -17,6 +24,25 @@ HEAVE, ROLL, PITCH, WATERPLANE = range(4)
 waterplane [m^2] at which they are so."""
 LINEAR, QUADRATIC = 0, 36
 """Columns of `DampingArrays.matrices` at which the two matrices begin."""
+
+
+class WeldedGroups(NamedTuple):
+    """Drag of bodies that welds hold together, as of one body."""
+
+    rows: Annotated[Words, ("k",)]
+    """Rows of the members in `DampingArrays`, group after group."""
+    starts: Annotated[Words, ("g + 1",)]
+    """Where those of each group begin, and the end of all."""
+    welds: Annotated[Words, ("w",)]
+    """Equality constraints that hold each group, group after group."""
+    weld_starts: Annotated[Words, ("g + 1",)]
+    """Where those of each group begin, and the end of all."""
+    linear: Annotated[Doubles, ("g", 6)]
+    """As `DampingArrays.linear`, of all members as one body, along the axes of the first."""
+    quadratic: Annotated[Doubles, ("g", 6)]
+    """As `DampingArrays.quadratic`, likewise."""
+    lengths: Annotated[Doubles, ("g",)]
+    """Length of all members as one body [m], for drag by panels."""
 
 
 class DampingArrays(NamedTuple):
@@ -42,6 +68,13 @@ class DampingArrays(NamedTuple):
     """The bodies and all that is welded to each, one after the other."""
     member_starts: Annotated[Words, ("n + 1",)]
     """Where those of each body begin, and the end of all."""
+    group: Annotated[Words, ("n",)]
+    """Which of the welded groups each belongs to; -1 for none."""
+    welded: WeldedGroups
+    """The groups. While all its welds act, a group has the drag of one body, not of its members."""
+    exposed: Annotated[Doubles, ("f", 2)]
+    """Part of each face that meets water, not another hull of its body (0) or of its group (1); no
+    rows if no body has drag by panels."""
 
     @property
     def radiates(self) -> bool:
@@ -56,6 +89,7 @@ def add_drag(
     sea,  # `sea.Sea`
     time,  # [s]
     timestep,  # [s]
+    active,  # (neq,) whether each equality constraint acts
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     out,  # (nbody, 6)
 ):
@@ -65,13 +99,20 @@ def add_drag(
     as Fossen (2021, sec. 6.4) has it, with matrices, at the body's origin. An explicit force must
     not turn the motion round within a timestep, so each coefficient is held below the body's
     apparent mass there divided by the timestep; and of matrices, scaled by those masses, the norm.
+
+    Bodies that welds hold together are one body here.
     """
     water, v, m = np.empty(3), np.empty(6), np.empty(6)
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
+    for g in range(damping.welded.linear.shape[0]):
+        if holds(damping.welded, g, active):
+            _add_group(damping, g, bodies, sea, time, rate, centres, out)
     for n in range(damping.bodies.shape[0]):
         b = damping.bodies[n]
         volume = centres[b, VOLUME]
         if not volume > 0.0:
+            continue
+        if damping.group[n] >= 0 and holds(damping.welded, damping.group[n], active):
             continue
         wet = min(volume / damping.volumes[n], 1.0)
         r = bodies.xmat[b]
@@ -86,17 +127,87 @@ def add_drag(
 
         # the force against it, held
         mass, inertias = rigid_body(damping, bodies, n)
-        m[:3] = _apparent(mass, inertias, at, bodies.xipos[b])
+        m[:3] = apparent_mass(mass, inertias, at, bodies.xipos[b])
         m[3], m[4], m[5] = inertias
         if coupled:
             held = wet * _held(damping.matrices[n], wet, v, m, rate)
             f = _product(damping.matrices[n], v, held)
         else:
-            for i in range(6):
-                d = wet * (damping.linear[n, i] + damping.quadratic[n, i] * abs(v[i]))
-                m[i] = -min(d, m[i] * rate) * v[i]
-            f = m[0], m[1], m[2], m[3], m[4], m[5]
-        _add(r, at, bodies.xipos[b], f, out[b])
+            f = _resist(damping.linear[n], damping.quadratic[n], wet, v, m, rate)
+        add_wrench(r, at, bodies.xipos[b], f, out[b])
+
+
+@njit(cache=True, error_model="numpy")
+def _add_group(damping, g, bodies, sea, time, rate, centres, out):
+    """Add the drag of bodies that welds hold together, as of one body.
+
+    Their velocity is that of the rigid body with their momentum, and each gets of the force what it
+    needs to move along: so the drag neither loads the welds nor takes from motion against them.
+    """
+    rows = damping.welded.rows[damping.welded.starts[g] : damping.welded.starts[g + 1]]
+    water, v, m = np.empty(3), np.empty(6), np.empty(6)
+    at, com, f = np.zeros(3), np.empty(3), np.empty(6)
+
+    # what is wet of it
+    volume = displaced = 0.0
+    for n in rows:
+        b = damping.bodies[n]
+        displaced += damping.volumes[n]
+        if centres[b, VOLUME] > 0.0:
+            volume += centres[b, VOLUME]
+            for c in range(3):
+                at[c] += centres[b, VOLUME] * centres[b, CX + c]
+    if not volume > 0.0:
+        return
+    at /= volume
+    wet = min(volume / displaced, 1.0)
+
+    # the velocity relative to the water at that centroid, along the axes of the first
+    parts = np.empty((rows.shape[0], 10))
+    whole = gather_group(damping, bodies, rows, parts)
+    com[0], com[1], com[2] = whole[1], whole[2], whole[3]
+    set_current(sea.current, sea.level - at[2], time, water)
+    add_velocity(sea.waves, at[0], at[1], at[2] - sea.level, time, water)
+    find_motion(damping, bodies, rows, parts, whole, v)
+    x, y, z = difference(at, com)
+    r = bodies.xmat[damping.bodies[rows[0]]]
+    ux = v[0] + v[4] * z - v[5] * y - water[0]
+    uy = v[1] + v[5] * x - v[3] * z - water[1]
+    uz = v[2] + v[3] * y - v[4] * x - water[2]
+    wx, wy, wz = v[3], v[4], v[5]
+    for i in range(3):
+        v[i] = ux * r[i] + uy * r[3 + i] + uz * r[6 + i]
+        v[3 + i] = wx * r[i] + wy * r[3 + i] + wz * r[6 + i]
+
+    # the force against it, held, and shared
+    inertias = find_inertias(whole, r)
+    m[:3] = apparent_mass(whole[0], inertias, at, com)
+    m[3], m[4], m[5] = inertias
+    f[:] = 0.0
+    resistance = _resist(damping.welded.linear[g], damping.welded.quadratic[g], wet, v, m, rate)
+    add_wrench(r, at, com, resistance, f)
+    share(damping, bodies, rows, parts, whole, f, out)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _resist(linear, quadratic, wet, v, masses, rate):
+    """Minus damping, linear and quadratic, times velocities, each held below masses times a rate.
+
+    All are (6,).
+    """
+    for i in range(6):
+        d = wet * (linear[i] + quadratic[i] * abs(v[i]))
+        masses[i] = -min(d, masses[i] * rate) * v[i]
+    return masses[0], masses[1], masses[2], masses[3], masses[4], masses[5]
+
+
+@njit(cache=True, error_model="numpy")
+def holds(welded, g, active):
+    """Whether all welds of a group act."""
+    for w in range(welded.weld_starts[g], welded.weld_starts[g + 1]):
+        if not active[welded.welds[w]]:
+            return False
+    return True
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -121,56 +232,6 @@ def _coefficient(matrices, i, j, v):
     return matrices[LINEAR + 6 * i + j] + matrices[QUADRATIC + 6 * i + j] * abs(v[j])
 
 
-@njit(cache=True, error_model="numpy")
-def add_radiation(
-    damping,
-    owners,  # (h,) body of each hull
-    bodies,
-    sea,
-    time,
-    timestep,
-    wet,  # (h, 8) submersion of the hulls
-    centres,
-    out,
-):
-    """Add the damping of heave, roll and pitch by the waves that a body makes.
-
-    It scales with the waterplane of the body.
-
-    At the centroid of what is wet, on the velocity there relative to the waves, held as for
-    `add_drag`.
-    """
-    water, v, radiation = np.empty(3), np.empty(6), damping.radiation
-    rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    for n in range(damping.bodies.shape[0]):
-        b = damping.bodies[n]
-        if not centres[b, VOLUME] > 0.0 or not radiation[n, WATERPLANE] > 0.0:
-            continue
-        area = 0.0
-        for h in range(owners.shape[0]):
-            if owners[h] == b:
-                area += wet[h, WATERPLANE_AREA]
-        share = min(max(area / radiation[n, WATERPLANE], 0.0), 1.0)
-        if share == 0.0:
-            continue
-
-        # the velocity relative to the waves
-        r, at = bodies.xmat[b], centres[b, CX:]
-        water[:] = 0.0
-        add_velocity(sea.waves, at[0], at[1], at[2] - sea.level, time, water)
-        relative_velocity(bodies, b, at, water, v)
-        heave = r[6] * v[0] + r[7] * v[1] + r[8] * v[2]
-
-        # the force against it, held
-        mass, inertias = rigid_body(damping, bodies, n)
-        apparent = _apparent(mass, inertias, at, bodies.xipos[b])
-        up = -min(share * radiation[n, HEAVE], apparent * rate) * heave
-        roll = -min(share * radiation[n, ROLL], inertias[0] * rate) * v[3]
-        pitch = -min(share * radiation[n, PITCH], inertias[1] * rate) * v[4]
-        f = up * r[6], up * r[7], up * r[8], roll, pitch, 0.0
-        _add(r, at, bodies.xipos[b], f, out[b])
-
-
 @njit(cache=True, error_model="numpy", inline="always")
 def relative_velocity(bodies, b, at, water, out):
     """Write the velocity of a body relative to the water, and its rotation, to `out` (6,).
@@ -188,7 +249,7 @@ def relative_velocity(bodies, b, at, water, out):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _apparent(mass, inertias, at, com):
+def apparent_mass(mass, inertias, at, com):
     """The least mass that a body opposes to a force at a place.
 
     It is 0 for a body without inertia, about which MuJoCo itself complains.
@@ -217,7 +278,7 @@ def _row(matrices, i, v):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _add(r, at, com, f, out):
+def add_wrench(r, at, com, f, out):
     """Add a wrench along the axes r at a place to `out` (6,), about `com` in the world's axes."""
     fx, fy, fz = rotate(r, f[0], f[1], f[2])
     tx, ty, tz = rotate(r, f[3], f[4], f[5])
@@ -228,49 +289,3 @@ def _add(r, at, com, f, out):
     out[3] += tx + y * fz - z * fy
     out[4] += ty + z * fx - x * fz
     out[5] += tz + x * fy - y * fx
-
-
-@njit(cache=True, error_model="numpy")
-def rigid_body(damping, bodies, n):
-    """Mass of a body with all that is welded to it, and its inertia about each of its axes.
-
-    The latter is torque over angular acceleration: one over the diagonal of the inverse inertia.
-    """
-    r, xipos = bodies.xmat[damping.bodies[n]], bodies.xipos
-    members = damping.members[damping.member_starts[n] : damping.member_starts[n + 1]]
-    mass = x = y = z = 0.0
-    for b in members:
-        m = bodies.body_mass[b]
-        mass += m
-        x += m * xipos[b, 0]
-        y += m * xipos[b, 1]
-        z += m * xipos[b, 2]
-    if not mass > 0.0:
-        return 0.0, (0.0, 0.0, 0.0)
-    x, y, z = x / mass, y / mass, z / mass
-    xx = yy = zz = xy = xz = yz = 0.0
-    for b in members:
-        m, q = bodies.body_mass[b], bodies.ximat[b]
-        i0, i1, i2 = bodies.body_inertia[b, 0], bodies.body_inertia[b, 1], bodies.body_inertia[b, 2]
-        ax, ay, az = xipos[b, 0] - x, xipos[b, 1] - y, xipos[b, 2] - z
-        xx += q[0] * q[0] * i0 + q[1] * q[1] * i1 + q[2] * q[2] * i2 + m * (ay * ay + az * az)
-        yy += q[3] * q[3] * i0 + q[4] * q[4] * i1 + q[5] * q[5] * i2 + m * (ax * ax + az * az)
-        zz += q[6] * q[6] * i0 + q[7] * q[7] * i1 + q[8] * q[8] * i2 + m * (ax * ax + ay * ay)
-        xy += q[0] * q[3] * i0 + q[1] * q[4] * i1 + q[2] * q[5] * i2 - m * ax * ay
-        xz += q[0] * q[6] * i0 + q[1] * q[7] * i1 + q[2] * q[8] * i2 - m * ax * az
-        yz += q[3] * q[6] * i0 + q[4] * q[7] * i1 + q[5] * q[8] * i2 - m * ay * az
-    # the inverse of the symmetric matrix, by its cofactors
-    cxx, cyy, czz = yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy
-    cxy, cxz, cyz = xz * yz - xy * zz, xy * yz - xz * yy, xy * xz - xx * yz
-    determinant = xx * cxx + xy * cxy + xz * cxz
-    i0 = _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, r[0], r[3], r[6])
-    i1 = _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, r[1], r[4], r[7])
-    i2 = _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, r[2], r[5], r[8])
-    return mass, (i0, i1, i2)
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _about(determinant, cxx, cyy, czz, cxy, cxz, cyz, x, y, z):
-    """The determinant over the cofactors' quadratic form along an axis; 0 without inertia."""
-    form = cxx * x * x + cyy * y * y + czz * z * z + 2.0 * (cxy * x * y + cxz * x * z + cyz * y * z)
-    return determinant / form if form > 0.0 else 0.0

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels.arrays import Doubles, Int32s, Words, leaves
+from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths, Words, leaves
 
 
 class Option(NamedTuple):
@@ -88,6 +88,13 @@ class MassMatrix(NamedTuple):
     """The elements, which the water's added mass is written to."""
 
 
+class Equalities(NamedTuple):
+    """The equality constraints, by which welds hold bodies together."""
+
+    eq_active: Annotated[Truths, "mjData", ("neq",)]
+    """Whether each acts now."""
+
+
 class Engine(NamedTuple):
     """All that a pass of the water reads of the engine, and the two arrays that it writes to."""
 
@@ -98,6 +105,7 @@ class Engine(NamedTuple):
     joints: Joints
     geoms: Geoms
     mass_matrix: MassMatrix
+    equalities: Equalities
     qfrc_passive: Annotated[Doubles, "mjData", ("nv",)]
     """Generalized passive forces, which the water's are added to."""
 

@@ -13,7 +13,7 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from buoyancy_mj.kernels import damping, inertia, panels, pressure, reaction, wrenches
+from buoyancy_mj.kernels import damping, inertia, panels, pressure, radiation, reaction, wrenches
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.hulls import Hulls
@@ -156,6 +156,7 @@ def add_drag(arrays):
         loads.sea,
         engine.time,
         engine.option.timestep,
+        engine.equalities.eq_active,
         record.centres,
         record.causes.drag,
     )
@@ -174,6 +175,7 @@ def add_panel_drag(arrays):
         loads.sea,
         engine.time,
         engine.option.timestep,
+        engine.equalities.eq_active,
         record.wet,
         record.causes.drag,
     )
@@ -183,7 +185,7 @@ def add_panel_drag(arrays):
 def add_radiation(arrays):
     """Damping by the waves that a body makes."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
-    damping.add_radiation(
+    radiation.add_radiation(
         loads.damping,
         loads.owners,
         engine.bodies,

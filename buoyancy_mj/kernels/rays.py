@@ -1,4 +1,4 @@
-"""A mesh as a grid of parallel rays sees it: its silhouette, and how often it encloses space."""
+"""A mesh as parallel rays see it: what they meet first, and how often it encloses space."""
 
 import math
 
@@ -48,20 +48,70 @@ def _cells(a, b, c, low, step, count):
 
 
 @njit(cache=True, error_model="numpy")
-def silhouette(u, v, faces, low, step, grid):
-    """Mark the cells of `grid` (n, m) that the triangles (u, v) cover.
+def see(u, v, w, faces, low, step, seen):
+    """Write the face that a ray along w meets first, and the one that it meets last.
 
-    The centres of the cells are low + (i + 1/2) step.
+    Rays run through the centres of cells, low + (i + 1/2) step along u and v. The indices go to
+    `seen` (2, n, m); it keeps what it holds where a ray meets nothing. A ray enters a closed mesh
+    where faces wind right, and leaves it where they wind left.
     """
+    depths = np.full(seen.shape, math.inf)
     for f in range(faces.shape[0]):
         i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
-        first_u, last_u = _cells(u[i], u[j], u[k], low[0], step[0], grid.shape[0])
-        first_v, last_v = _cells(v[i], v[j], v[k], low[1], step[1], grid.shape[1])
+        twice = (u[j] - u[i]) * (v[k] - v[i]) - (u[k] - u[i]) * (v[j] - v[i])
+        if twice == 0.0:
+            continue
+        side = int(twice > 0.0)
+
+        # its plane, turned so that what is met first or last is least
+        sign = 1.0 if side == 0 else -1.0
+        along_u = sign * ((w[j] - w[i]) * (v[k] - v[i]) - (w[k] - w[i]) * (v[j] - v[i])) / twice
+        along_v = sign * ((u[j] - u[i]) * (w[k] - w[i]) - (u[k] - u[i]) * (w[j] - w[i])) / twice
+        lowest, highest = sign * w[i], sign * w[i]
+        for corner in (j, k):
+            lowest, highest = min(lowest, sign * w[corner]), max(highest, sign * w[corner])
+        first_u, last_u = _cells(u[i], u[j], u[k], low[0], step[0], seen.shape[1])
+        first_v, last_v = _cells(v[i], v[j], v[k], low[1], step[1], seen.shape[2])
         for p in range(first_u, last_u + 1):
+            x = low[0] + (p + 0.5) * step[0]
             for q in range(first_v, last_v + 1):
-                if not grid[p, q]:
-                    x, y = low[0] + (p + 0.5) * step[0], low[1] + (q + 0.5) * step[1]
-                    grid[p, q] = _covers(u, v, faces[f], x, y) != 0
+                y = low[1] + (q + 0.5) * step[1]
+                depth = sign * w[i] + along_u * (x - u[i]) + along_v * (y - v[i])
+                depth = min(max(depth, lowest), highest)
+                if depth < depths[side, p, q] and _covers(u, v, faces[f], x, y) != 0:
+                    depths[side, p, q], seen[side, p, q] = depth, f
+
+
+@njit(cache=True, error_model="numpy")
+def count_windings(vertices, faces, points, windings):
+    """Write how often a mesh encloses each point to `windings` (n,), by rays upwards.
+
+    The points (n, 3) stand in the order of their x.
+    """
+    x, y, z = vertices[:, 0], vertices[:, 1], vertices[:, 2]
+    windings[:] = 0
+    for f in range(faces.shape[0]):
+        i, j, k = faces[f, 0], faces[f, 1], faces[f, 2]
+        low, high = min(x[i], x[j], x[k]), max(x[i], x[j], x[k])
+        front, back = min(y[i], y[j], y[k]), max(y[i], y[j], y[k])
+
+        # the first point that is not beside the face
+        first, last = 0, points.shape[0]
+        while first < last:
+            middle = (first + last) // 2
+            if points[middle, 0] < low:
+                first = middle + 1
+            else:
+                last = middle
+        for n in range(first, points.shape[0]):
+            px, py, pz = points[n, 0], points[n, 1], points[n, 2]
+            if px > high:
+                break
+            if py < front or py > back:
+                continue
+            side = _covers(x, y, faces[f], px, py)
+            if side != 0 and _height(x, y, z, faces[f], px, py) > pz:
+                windings[n] += side
 
 
 @njit(cache=True, error_model="numpy")

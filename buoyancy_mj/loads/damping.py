@@ -22,11 +22,22 @@ class Silhouette:
     """Linear and quadratic damping of a body, estimated once from the silhouettes of its hulls.
 
     Along each axis of the body the force is 1/2 rho C A |u| u. A is the silhouette of all its
-    hulls. C is `coefficient` times the mean square cosine between the hulls' normals and the axis,
-    weighted by the projected area of each face. C is 1.05 for a cube face-on, 0.53 for a sphere
-    and 0.70 for a cylinder across the flow. Hoerner, Fluid-Dynamic Drag (1965), ch. 3, measured
-    1.05, 0.47 and, with a length of one to five diameters, 0.64 to 0.74 (table 7.3 of White, Fluid
-    Mechanics, 8th ed.).
+    hulls. C has two parts, of what is seen from outside:
+
+    - Pressure: `coefficient` times the mean square cosine between the normals and the axis. It
+      falls by 18 % from 0.55 to 2.2 lengths over widths, the width that of a circle as large as the
+      silhouette: flow that separates at a blunt face closes on the sides of a longer body, 1.73
+      diameters behind the face of a cylinder (JSME Int. J. B 39(2):354, 1996). C of cylinders along
+      the flow was measured as 1.1, 0.93, 0.83, 0.85 at 0.5, 1, 2 and 4 diameters (Munson et al.,
+      Fundamentals of Fluid Mechanics, 6th ed., fig. 9.20).
+    - Friction: `friction` times the area of the sides over A.
+
+    C is 1.04 for a cube face-on, 0.52 for a sphere, 0.21 for an ellipsoid four times as long as
+    wide and 0.98 for a cylinder as long. Measured were 1.05 to 1.07, 0.47, 0.25 and 0.87 (White,
+    Fluid Mechanics, 8th ed., table 7.3, after Hoerner, Fluid-Dynamic Drag, 1965, ch. 3).
+
+    Bodies that active welds hold together are one body here, along the axes of the first of them,
+    as long as the welds act.
 
     When the body turns about an axis through the centroid of its volume, each strip of the two
     other silhouettes meets the flow at its own speed (cross-flow principle). The torque is
@@ -43,6 +54,9 @@ class Silhouette:
 
     coefficient: float = 1.05
     """Drag coefficient of a flat face across the flow."""
+    friction: float = 0.0075
+    """Coefficient of skin friction; that of a smooth plate at a Reynolds number of 1.5e5 by
+    default, 0.3 m long at 0.5 m/s (ITTC 1957). Ships have 0.002."""
     linear_froude: float = 0.05
     """Froude number at which linear and quadratic damping are equal; 0 for no linear damping."""
 
@@ -56,7 +70,8 @@ class Panels:
 
     Leading faces have the coefficient 2/3 `coefficient`, trailing faces 1/3. So a plate across the
     flow has the whole `coefficient`, and a smooth hull along the flow little; the formulas stand in
-    `kernels.panels.add_panels`.
+    `kernels.panels.add_panels`. Faces that lie against or within another hull of the body, or of
+    what active welds hold to it, do not count.
 
     Raises:
         ModelError: a negative or infinite value, or no viscosity.

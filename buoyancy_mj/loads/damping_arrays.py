@@ -15,8 +15,12 @@ from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.custom import read_numerics
 from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
 from buoyancy_mj.hulls.names import body_name
-from buoyancy_mj.kernels.damping import DampingArrays
+from buoyancy_mj.hulls.welds import WeldedGroup, group_welded_bodies
+from buoyancy_mj.kernels.damping import DampingArrays, WeldedGroups
+from buoyancy_mj.kernels.hulls import Hulls
+from buoyancy_mj.kernels.panels import LENGTH
 from buoyancy_mj.loads.damping import Damping, Panels, Silhouette
+from buoyancy_mj.loads.exposure import measure_exposure
 from buoyancy_mj.loads.matrices import check_eigenvalues
 from buoyancy_mj.loads.silhouettes import Silhouettes, estimate_drag, measure_silhouettes
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -48,7 +52,11 @@ class _Shape(NamedTuple):
 
 
 def resolve_damping(
-    damping: Damping, model: mujoco.MjModel, hulls: Sequence[Hull], density: float
+    damping: Damping,
+    model: mujoco.MjModel,
+    hulls: Sequence[Hull],
+    density: float,
+    packed: Hulls | None = None,
 ) -> DampingArrays:
     """Find the damping of the bodies that have hulls.
 
@@ -57,6 +65,7 @@ def resolve_damping(
         model: any model.
         hulls: its hulls.
         density: of the water [kg/m^3], for estimates.
+        packed: the same hulls as kernels read them, for drag by panels.
 
     Raises:
         ModelError: a body without mass, or numerics of the model that make no sense.
@@ -72,10 +81,14 @@ def resolve_damping(
         for body, group in by_body.items()
     }
 
-    # what slows each of them down
+    # what slows each of them down, and what welds hold together
     radiation = _resolve_radiation(damping, model, shapes)
-    viscous = _resolve_viscous(damping, model, shapes, density)
+    viscous, groups, of_groups = _resolve_viscous(damping, model, shapes, density)
     panels = np.stack([drag.panels for drag in viscous])
+    exposed = np.zeros((0, 2))
+    if panels.any() and packed is not None:
+        exposed = measure_exposure(packed, hulls, groups)
+    group_of = {body: i for i, group in enumerate(groups) for body in group.places}
     return DampingArrays(
         bodies=np.array(bodies),
         volumes=np.array([shape.volume for shape in shapes.values()]),
@@ -89,6 +102,24 @@ def resolve_damping(
         panels=panels if panels.any() else panels[:0],
         members=np.concatenate(members).astype(np.int64),
         member_starts=np.cumsum([0, *(len(group) for group in members)]),
+        group=np.array([group_of.get(body, -1) for body in bodies]),
+        welded=_arrange_groups(groups, bodies, of_groups),
+        exposed=exposed,
+    )
+
+
+def _arrange_groups(
+    groups: Sequence[WeldedGroup], bodies: Sequence[int], drags: Sequence[_Viscous]
+) -> WeldedGroups:
+    """Groups as kernels read them, with the drag of each; `bodies` are those of the rows."""
+    return WeldedGroups(
+        rows=np.array([bodies.index(body) for group in groups for body in group.places], np.int64),
+        starts=np.cumsum([0, *(len(group.places) for group in groups)]),
+        welds=np.array([weld for group in groups for weld in group.welds], np.int64),
+        weld_starts=np.cumsum([0, *(len(group.welds) for group in groups)]),
+        linear=np.array([drag.linear for drag in drags]).reshape(-1, 6),
+        quadratic=np.array([drag.quadratic for drag in drags]).reshape(-1, 6),
+        lengths=np.array([drag.panels[LENGTH] for drag in drags]),
     )
 
 
@@ -117,23 +148,52 @@ def _resolve_radiation(
 
 def _resolve_viscous(
     damping: Damping, model: mujoco.MjModel, shapes: Mapping[int, _Shape], density: float
-) -> list[_Viscous]:
-    """Viscous drag of each body: what the model gives, or else an estimate."""
+) -> tuple[list[_Viscous], tuple[WeldedGroup, ...], list[_Viscous]]:
+    """Viscous drag of each body: what the model gives, or else an estimate.
+
+    Returns:
+        The drag of the bodies; the groups of those that are estimated and that welds hold together;
+        and the drag of the groups.
+    """
     linear = read_numerics(model, "linear_damping", list(shapes))
     quadratic = read_numerics(model, "quadratic_damping", list(shapes))
     gravity = float(np.linalg.norm(model.opt.gravity))
+    given = linear.keys() | quadratic.keys()
+    estimated = [body for body in shapes if body not in given and damping.viscous is not None]
+    groups = group_welded_bodies(model, estimated)
+    together = [_join_shapes(shapes, group) for group in groups]
     drags = []
     for body, shape in shapes.items():
-        if damping.viscous is None:
-            drag = _Viscous()
-        elif body in linear or body in quadratic:
+        if body in given and damping.viscous is not None:
             drag = _read_viscous(model, body, linear.get(body), quadratic.get(body))
-        elif isinstance(damping.viscous, Panels):
-            drag = _prepare_panels(damping.viscous, shape, density)
         else:
-            drag = _estimate_viscous(damping.viscous, shape, density, gravity)
+            drag = _estimate(damping.viscous, shape, density, gravity)
         drags.append(drag)
-    return drags
+    of_groups = [_estimate(damping.viscous, whole, density, gravity) for whole in together]
+    return drags, groups, of_groups
+
+
+def _estimate(
+    viscous: Silhouette | Panels | None, shape: _Shape, density: float, gravity: float
+) -> _Viscous:
+    """Drag as the user chose to estimate it."""
+    if viscous is None:
+        return _Viscous()
+    if isinstance(viscous, Panels):
+        return _prepare_panels(viscous, shape, density)
+    return _estimate_viscous(viscous, shape, density, gravity)
+
+
+def _join_shapes(shapes: Mapping[int, _Shape], group: WeldedGroup) -> _Shape:
+    """The hulls of all bodies of a group, in the frame of the first."""
+    members = [(shapes[body], *place) for body, place in group.places.items()]
+    volumes = np.array([shape.volume for shape, _, _ in members])
+    centres = [position + rotation @ shape.centre for shape, rotation, position in members]
+    return _Shape(
+        [mesh.transformed(turn, at) for shape, turn, at in members for mesh in shape.meshes],
+        float(volumes.sum()),
+        volumes @ centres / volumes.sum(),
+    )
 
 
 def _read_viscous(
@@ -167,7 +227,7 @@ def _estimate_viscous(
 ) -> _Viscous:
     """Drag estimated from silhouettes; its linear part equals the quadratic one at a low speed."""
     silhouettes = shape.silhouettes()
-    quadratic = estimate_drag(0.5 * density * silhouette.coefficient, shape.meshes, silhouettes)
+    quadratic = estimate_drag(silhouette.coefficient, silhouette.friction, density, silhouettes)
     slow = silhouette.linear_froude * math.sqrt(gravity * silhouettes.length)
     slow_turn = slow / (0.5 * silhouettes.length)
     return _Viscous(linear=quadratic * np.repeat([slow, slow_turn], 3), quadratic=quadratic)

@@ -1,20 +1,29 @@
 """Silhouettes of a body along its axes, and the drag that is estimated from them."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.kernels.rays import silhouette
+from buoyancy_mj.kernels.rays import see
 from buoyancy_mj.meshes.mesh import TriMesh
 
 CELLS = 200
 """Cells along each side of the grid on which a silhouette is measured."""
+REATTACHING = (0.55, 2.2)
+"""Length over width from which the flow along a blunt body begins to close on its sides, and from
+which it has closed."""
+RELIEF = 0.18
+"""Part of its pressure drag that a body loses where the flow closes on its sides."""
 
 
 class Silhouettes(NamedTuple):
-    """What a body shows along each of its axes, on a grid over its bounding box."""
+    """What a body shows along each of its axes, on a grid over its bounding box.
+
+    Only what is seen from outside counts: faces behind others add nothing.
+    """
 
     areas: NDArray[np.float64]
     """Area of each cell that the body covers, along x, y, z (3, CELLS, CELLS) [m^2]; 0 elsewhere.
@@ -22,8 +31,18 @@ class Silhouettes(NamedTuple):
     The cells of the silhouette along an axis run along the next axis, then the one after it."""
     middles: NDArray[np.float64]
     """Coordinates of the middles of the cells along x, y, z (CELLS, 3) [m], from the centre."""
-    length: float
-    """Longest side of the bounding box [m]."""
+    extents: NDArray[np.float64]
+    """Sides of the bounding box (3,) [m]."""
+    bluffness: NDArray[np.float64]
+    """Mean square cosine between the normals that are seen along each axis and it (3,)."""
+    walls: NDArray[np.float64]
+    """Area of the faces that water passes along each axis (3,) [m^2]: each times the square sine
+    between its normal and the axis."""
+
+    @property
+    def length(self) -> float:
+        """Longest side of the bounding box [m]."""
+        return float(self.extents.max())
 
 
 def measure_silhouettes(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) -> Silhouettes:
@@ -31,44 +50,58 @@ def measure_silhouettes(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) 
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     vertices = np.vstack([mesh.vertices for mesh in meshes]) - centre
     faces = np.vstack([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)])
+    sizes = np.concatenate([mesh.areas for mesh in meshes])
+    vectors = np.vstack([mesh.area_vectors for mesh in meshes])
+    normals = np.abs(vectors) / np.maximum(sizes, 1e-300)[:, None]
     low = vertices.min(axis=0)
     high = vertices.max(axis=0)
     step = (high - low) / CELLS
 
-    areas = np.empty((3, CELLS, CELLS))
+    areas, bluffness, walls = np.empty((3, CELLS, CELLS)), np.empty(3), np.zeros(3)
     for axis in range(3):
+        # the faces that are seen first from both sides, and in how many cells
         j, k = (axis + 1) % 3, (axis + 2) % 3
-        grid = np.zeros((CELLS, CELLS), np.bool_)
-        silhouette(vertices[:, j], vertices[:, k], faces, low[[j, k]], step[[j, k]], grid)
-        areas[axis] = step[j] * step[k] * grid
+        seen = np.full((2, CELLS, CELLS), -1, np.int64)
+        u, v, w = vertices[:, j], vertices[:, k], vertices[:, axis]
+        see(u, v, w, faces, low[[j, k]], step[[j, k]], seen)
+        cells = np.bincount(seen[seen >= 0], minlength=len(faces))
+
+        # a face is seen along all axes by shares of its area whose sum is 1: its square cosines
+        cell = step[j] * step[k]
+        areas[axis] = cell * (seen[0] >= 0)
+        bluffness[axis] = cells @ normals[:, axis] ** 2 / cells.sum()
+        walls += cell * (cells * normals[:, axis]) @ (1.0 - normals**2)
     middles = low + (np.arange(CELLS)[:, None] + 0.5) * step
-    return Silhouettes(areas, middles, float((high - low).max()))
+    return Silhouettes(areas, middles, high - low, bluffness, walls)
 
 
 def estimate_drag(
-    resistance: float, meshes: Sequence[TriMesh], silhouettes: Silhouettes
+    coefficient: float, friction: float, density: float, silhouettes: Silhouettes
 ) -> NDArray[np.float64]:
     """Quadratic damping (6,) [N s^2/m^2, N m s^2] of a body about the centre of its silhouettes.
 
     `Silhouette` says where the formulas come from.
 
     Args:
-        resistance: force per area and velocity squared of a flat face across the flow [kg/m^3].
-        meshes: the hulls of the body, in its frame.
-        silhouettes: theirs.
+        coefficient: drag coefficient of a flat face across the flow.
+        friction: coefficient of skin friction.
+        density: of the water [kg/m^3].
+        silhouettes: of the body.
     """
-    # how squarely the faces meet the flow along each axis: 1 for a box, 1/2 for a sphere
-    shown = np.abs(np.vstack([mesh.area_vectors for mesh in meshes]))
-    areas = np.maximum(np.concatenate([mesh.areas for mesh in meshes]), 1e-300)
-    cosines = shown / areas[:, None]
-    bluffness = (shown * cosines**2).sum(axis=0) / shown.sum(axis=0)
-
     drag = np.zeros(6)
     for axis in range(3):
+        # the drag coefficient along this axis: pressure, and friction on the sides
         j, k = (axis + 1) % 3, (axis + 2) % 3
-        strips = resistance * bluffness[axis] * silhouettes.areas[axis]
-        drag[axis] = strips.sum()
+        cells = silhouettes.areas[axis]
+        area = float(cells.sum())
+        slenderness = silhouettes.extents[axis] / math.sqrt(4.0 * area / math.pi)
+        closed = float(np.interp(slenderness, REATTACHING, (0.0, 1.0)))
+        pressure = coefficient * silhouettes.bluffness[axis] * (1.0 - RELIEF * closed)
+        total = pressure + friction * silhouettes.walls[axis] / area
+
         # turning about j moves the strips at distance |k| along this axis, and the other way round
+        strips = 0.5 * density * total * cells
+        drag[axis] = strips.sum()
         drag[3 + j] += (strips * np.abs(silhouettes.middles[None, :, k]) ** 3).sum()
         drag[3 + k] += (strips * np.abs(silhouettes.middles[:, None, j]) ** 3).sum()
     return drag

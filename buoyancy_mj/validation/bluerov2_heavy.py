@@ -81,7 +81,7 @@ CASES = (
         "`models/bluerov2_heavy` is stepped until its speed no longer changes. The periods are "
         "those of its hydrostatics, undamped.",
         _compare,
-        loads="buoyancy, given drag and given added mass",
+        loads=("buoyancy", "drag: as the model states it", "added_mass"),
     ),
 )
 """In the order of the page."""

@@ -51,5 +51,6 @@ class Case:
     """Why rows fail, where some do."""
     draw: Callable[[], Figure] | None = None
     """Draws the picture, if the case has one."""
-    loads: str = ""
-    """Which loads act."""
+    loads: tuple[str, ...] = ()
+    """The loads that act in the runs, each as a name of `Loads.by_cause` and perhaps what of it, as
+    "drag: estimated"; () for a case that runs nothing in water."""

@@ -54,7 +54,10 @@ DRAG_COEFFICIENTS = {
     "square plate across the flow": Body(_box(0.1, 0.1, 0.002), 2, 0.04, 1.18),
     "disk across the flow": Body(_cylinder(0.002), 2, _DISK_AREA, 1.17),
     "cylinder along the flow, as long as wide": Body(_cylinder(0.1), 2, _DISK_AREA, 0.90),
+    "cylinder along the flow, half as long": Body(_cylinder(0.05), 2, _DISK_AREA, 1.1),
+    "cylinder along the flow, 2 times as long": Body(_cylinder(0.2), 2, _DISK_AREA, 0.85),
     "cylinder along the flow, 4 times as long": Body(_cylinder(0.4), 2, _DISK_AREA, 0.87),
+    "cylinder along the flow, 7 times as long": Body(_cylinder(0.7), 2, _DISK_AREA, 0.99),
     "cylinder across the flow, as long as wide": Body(_cylinder(0.1), 0, 0.04, 0.64),
     "cylinder across the flow, 2 times as long": Body(_cylinder(0.2), 0, 0.08, 0.68),
     "cylinder across the flow, 5 times as long": Body(_cylinder(0.5), 0, 0.2, 0.74),
@@ -67,7 +70,8 @@ DRAG_COEFFICIENTS = {
         _ellipsoid(0.4), 0, _DISK_AREA, 0.25
     ),
 }
-"""Measured at Reynolds numbers from 1e4; White's table 7.3."""
+"""Measured at Reynolds numbers from 1e4: White's table 7.3, but for cylinders along the flow half
+as long as wide (Munson) and 2 and 7 times as long (Matthews)."""
 
 ADDED_MASS_COEFFICIENTS = {
     "square prism along its axis, as long as wide": Body(_box(0.1, 0.1, 0.1), 2, 8e-3, 0.68),
@@ -160,13 +164,13 @@ CASES = (
     Case(
         "drag_table",
         "Measured drag coefficients of simple bodies, and the estimate",
-        "White, *Fluid Mechanics*, 8th ed., table 7.3, after Hoerner 1965, *Fluid-Dynamic Drag*",
-        "`Silhouette()` estimates the coefficients from the silhouettes of each body.",
+        "White, *Fluid Mechanics*, 8th ed., table 7.3, after Hoerner 1965, *Fluid-Dynamic Drag*; "
+        "cylinders along the flow half as long as wide by Munson et al., *Fundamentals of Fluid "
+        "Mechanics*, 6th ed., fig. 9.20, and 2 and 7 times as long by Matthews, *Aeronautical "
+        "Engineer's Data Book*, fig. 5.13",
+        "`Silhouette()` estimates the coefficients from silhouettes and sides of each body.",
         _compare_drag,
-        "The estimate knows how squarely faces meet the flow, but not how the flow closes behind "
-        "the body. A long and rounded body has more drag than it says, a long and blunt one a "
-        "little less.",
-        _draw,
+        draw=_draw,
     ),
     Case(
         "added_mass_table",

@@ -118,9 +118,9 @@ CASES = (
         "A neutral sphere that drifts with a current follows the water's orbit",
         "Galilei: who drifts along sees still water, with waves of the frequency omega - kU",
         "A sphere of 5 cm radius starts with the water's velocity, 1 m under waves of 2 mm "
-        "amplitude and 2.5 s, and moves for a period without drag; Froude-Krylov pressure and "
-        "added mass act.",
+        "amplitude and 2.5 s, and moves for a period without drag.",
         _compare_drifter,
+        loads=("buoyancy", "wave_pressure", "added_mass: estimated"),
     ),
 )
 """In the order of the page."""

@@ -185,7 +185,7 @@ CASES = (
         _compare_sphere,
         "Half wet the sphere has gathered the right mass. But a share by volume gathers it evenly, "
         "and a cap does so from its first touch on, as the third power of its wetted radius.",
-        loads="added mass and slamming",
+        loads=("buoyancy", "added_mass", "slamming"),
     ),
     Case(
         "wedge_entry",
@@ -199,7 +199,7 @@ CASES = (
         "Wagner's width is that of flat wedges: with deadrise the water rises less, and pushes "
         "sideways as well.",
         _draw_wedges,
-        "added mass and slamming",
+        ("buoyancy", "added_mass", "slamming"),
     ),
 )
 """In the order of the page."""

@@ -83,8 +83,14 @@ DECAYS = {
 """By the height from which it falls [m]."""
 
 
+_UNDRAGGED = Damping(viscous=None)
+"""Radiation damping alone, as the codes have it."""
+
+
 @functools.cache
-def decay(height: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def decay(
+    height: float, damping: Damping = _UNDRAGGED
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Times (n,) [s] and heights (n,) [m] of the sphere after its release at a height [m]."""
 
     def start(data: mujoco.MjData) -> None:
@@ -96,14 +102,14 @@ def decay(height: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         20.0,
         read=lambda data: float(data.qpos[2]),
         start=start,
-        damping=Damping(viscous=None),
+        damping=damping,
     )
 
 
-def _compare_decay(height: float) -> Sequence[Row]:
+def _compare_decay(height: float, damping: Damping = _UNDRAGGED) -> Sequence[Row]:
     """Compare the decay after a release at a height [m]."""
     published = DECAYS[height]
-    times, heights = decay(height)
+    times, heights = decay(height, damping)
 
     # the level is crossed in time
     rows = [
@@ -213,7 +219,7 @@ CASES = (
         "`models/oes_sphere` has one added mass and one damping, those at its natural period. "
         "The codes have them by frequency. Viscous drag is left out, as it is in the codes.",
         lambda: _compare_decay(1.0),
-        loads="buoyancy, given radiation damping and given added mass",
+        loads=("buoyancy", "radiation", "added_mass"),
     ),
     Case(
         "sphere_decay_5m",
@@ -224,7 +230,15 @@ CASES = (
         "Added mass and damping are those of small motions. A share by volume gathers the water's "
         "mass later than the sphere's first touch does, and so the sphere is early.",
         _draw_decay,
-        "buoyancy, given radiation damping and given added mass",
+        ("buoyancy", "radiation", "added_mass"),
+    ),
+    Case(
+        "sphere_decay_5m_dragged",
+        "The same with the estimated drag",
+        TASK_10,
+        "The model is the same, and the estimate of drag acts, as it does where nothing is said.",
+        lambda: _compare_decay(5.0, Damping()),
+        loads=("buoyancy", "drag: estimated", "radiation", "added_mass"),
     ),
     Case(
         "sphere_response",
@@ -238,7 +252,7 @@ CASES = (
         "That is too coarse where waves are short beside the sphere, or where it resonates with "
         "little damping.",
         _draw_response,
-        "buoyancy, wave pressure, estimated drag, given radiation damping and given added mass",
+        ("buoyancy", "wave_pressure", "drag: estimated", "radiation", "added_mass"),
     ),
 )
 """In the order of the page."""

@@ -146,7 +146,7 @@ CASES = (
         "its waterplane. The centre of gravity gives its metacentric height, and each inertia "
         "includes the added mass. The periods are those of a decay from 1 cm or a degree.",
         _compare,
-        loads="buoyancy, and given added mass in heave",
+        loads=("buoyancy", "added_mass: in heave"),
     ),
 )
 """In the order of the page."""

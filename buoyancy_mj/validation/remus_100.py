@@ -87,7 +87,7 @@ CASES = (
         "A prolate spheroid has the vehicle's length, diameter and mass, Lamb's added mass, and "
         "0.3 of its inertia as added mass in roll. It is free, turned by a degree, without drag.",
         _compare,
-        loads="buoyancy and given added mass",
+        loads=("buoyancy", "added_mass: in two of the rows"),
     ),
 )
 """In the order of the page."""

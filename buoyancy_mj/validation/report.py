@@ -16,6 +16,7 @@ from buoyancy_mj.validation import (
     oes_sphere,
     otter,
     remus_100,
+    roll_decay,
     terminal_speeds,
     waves,
 )
@@ -26,6 +27,7 @@ _MODULES = (
     bluerov2_heavy,
     remus_100,
     otter,
+    roll_decay,
     coefficients,
     entries,
     terminal_speeds,
@@ -119,7 +121,7 @@ def _render_case(case: Case, rows: Sequence[Row]) -> str:
         f"## {case.title}\n",
         f"Published: {case.source}.\n",
         f"Here: {case.setup}\n",
-        *([f"Loads: {case.loads}.\n"] if case.loads else []),
+        *([f"Acting: {_name_loads(case)}.\n"] if case.loads else []),
         f"| {' | '.join(HEADER)} |",
         "| --- | ---: | ---: | ---: | ---: | --- |",
     ]
@@ -131,6 +133,12 @@ def _render_case(case: Case, rows: Sequence[Row]) -> str:
         lines.append(f"\n![{case.title}]({PICTURES}/{case.name}.png)")
     lines.append(f"\n`buoyancy-mj validate --only {case.name}`\n")
     return "\n".join(lines)
+
+
+def _name_loads(case: Case) -> str:
+    """The loads of a case in words, as "buoyancy, drag (estimated)"."""
+    parts = [load.replace("_", " ").partition(": ") for load in case.loads]
+    return ", ".join(f"{name} ({what})" if what else name for name, _, what in parts)
 
 
 def format_row(row: Row) -> tuple[str, ...]:

@@ -97,7 +97,7 @@ CASES = (
         "the measured coefficients of White's table 7.3",
         f"The bodies are released at 100 m depth and fall for {DURATION:g} s.",
         _compare_estimate,
-        loads="buoyancy and estimated drag",
+        loads=("buoyancy", "drag: estimated"),
     ),
     Case(
         "engine_fluid",
@@ -107,7 +107,7 @@ CASES = (
         "The first row of each body is the engine alone. The second is this water, with the "
         "engine's drag set in the model, and the body as much heavier as it is buoyant.",
         _compare_engine,
-        loads="buoyancy and the engine's own drag",
+        loads=("buoyancy", "drag: as the model states it"),
     ),
 )
 """In the order of the page."""

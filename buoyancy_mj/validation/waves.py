@@ -163,7 +163,7 @@ CASES = (
         "coefficient is 1.",
         _compare_cylinder,
         "A constant added mass knows no scattered waves.",
-        loads="buoyancy, wave pressure and given added mass",
+        loads=("buoyancy", "wave_pressure", "added_mass"),
     ),
     Case(
         "small_sphere",
@@ -173,7 +173,7 @@ CASES = (
         "A sphere of 5 cm radius starts with the water's velocity, 1 m under waves of 2 mm "
         "amplitude and 6 m length, and moves for a period without drag.",
         _compare_orbit,
-        loads="buoyancy, wave pressure and estimated added mass",
+        loads=("buoyancy", "wave_pressure", "added_mass: estimated"),
     ),
     Case(
         "long_waves",
@@ -182,7 +182,12 @@ CASES = (
         "A wall-sided float of 10 cm draft only heaves, with a little damping, in waves of 5 mm "
         "amplitude.",
         _compare_float,
-        loads="buoyancy, wave pressure, estimated drag and given radiation damping",
+        loads=(
+            "buoyancy",
+            "wave_pressure: in two of the rows",
+            "drag: estimated",
+            "radiation: in heave",
+        ),
     ),
 )
 """In the order of the page."""

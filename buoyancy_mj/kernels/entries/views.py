@@ -140,6 +140,6 @@ def _array(context, builder, field, address, shape):
     for extent in reversed(shape[1:]):
         strides.insert(0, builder.mul(strides[0], extent))
     array = make_array(kind)(context, builder)
-    pointer = context.get_value_type(kind.dtype).as_pointer()
+    pointer = context.get_data_type(kind.dtype).as_pointer()
     populate_array(array, builder.inttoptr(address, pointer), shape, strides, size, None)
     return array._getvalue()
