@@ -20,6 +20,7 @@ from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
 from buoyancy_mj.loads.damping_arrays import resolve_damping
+from buoyancy_mj.loads.foil_arrays import find_foils, gather_foils
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays
 from buoyancy_mj.submersion.hull_set import HullSet
@@ -50,6 +51,7 @@ class LoadModel:
             "wave_pressure": self.arrays.sea.pressure != PressureModel.archimedes,
             "drag": len(damping.bodies) > 0,
             "radiation": damping.radiates,
+            "foil": len(self.arrays.foils.bodies) > 0,
             "added_mass": len(self.arrays.added_mass.bodies) > 0,
         }
         return tuple(cause for cause in CAUSES if acts.get(cause, True))
@@ -62,6 +64,7 @@ class LoadModel:
             passes.add_drag: "drag" in self.causes,
             passes.add_panel_drag: len(self.arrays.damping.panels) > 0,
             passes.add_radiation: "radiation" in self.causes,
+            passes.add_foils: "foil" in self.causes,
             passes.add_reaction: "added_mass" in self.causes,
         }
         return tuple(load for load in passes.LOADS if acts.get(load, True))
@@ -133,14 +136,16 @@ def build_load_model(
     packed = settings.method.pack(hull_set, water)
 
     # what acts on them
+    foils = find_foils(model, bodies)
     arrays = LoadArrays(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
-        bodies=np.unique(owners),
+        bodies=np.unique([*owners, *(foil.body for foil in foils)]),
         sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
         damping=resolve_damping(damping, model, hulls, water.density)
         if damping
         else empty(DampingArrays),
+        foils=gather_foils(foils),
         added_mass=resolve_added_mass(model, hulls, water.density, settings.added_mass),
     )
     if arrays.damping.radiates and not isinstance(packed, PackedHulls):

@@ -1,0 +1,114 @@
+"""Explicit forces that oppose motion, held so that none turns a motion round within a timestep.
+
+A force that grows with velocity by D (6, 6) on a body of mobility L (6, 6), the acceleration per
+force, slows its motions down at rates that are the eigenvalues of D L. Here L is that of the whole
+tree of bodies, from MuJoCo's factors of the mass matrix. Wrenches are torque, then force, about the
+centre of mass of the tree, as MuJoCo's `cdof` has velocities.
+"""
+
+import numpy as np
+from numba import njit
+
+from buoyancy_mj.kernels.multibody import last_dof
+from buoyancy_mj.kernels.vectors import difference
+
+
+@njit(cache=True, error_model="numpy")
+def set_mobility(bodies, joints, mass_matrix, b, rows, out):
+    """Write J M^-1 J^T of a body to `out` (6, 6); `rows` (6, nv) are worked in.
+
+    With MuJoCo's M = L^T D L only the joints that carry the body matter: L^-T leads from each to
+    those above it.
+    """
+    last = last_dof(joints, b)
+    i = last
+    while i >= 0:
+        for k in range(6):
+            rows[k, i] = joints.cdof[i, k]
+        i = joints.dof_parentid[i]
+    out[:, :] = 0.0
+    i = last
+    while i >= 0:
+        first = mass_matrix.M_rowadr[i]
+        for e in range(first, first + mass_matrix.M_rownnz[i] - 1):
+            for k in range(6):
+                rows[k, mass_matrix.M_colind[e]] -= mass_matrix.qLD[e] * rows[k, i]
+        for k in range(6):
+            for m in range(6):
+                out[k, m] += rows[k, i] * rows[m, i] * mass_matrix.qLDiagInv[i]
+        i = joints.dof_parentid[i]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def set_push(at, com, normal, out):
+    """Write the wrench (6,) of a unit force along a normal at a place."""
+    x, y, z = difference(at, com)
+    fx, fy, fz = normal
+    out[0], out[1], out[2] = y * fz - z * fy, z * fx - x * fz, x * fy - y * fx
+    out[3], out[4], out[5] = fx, fy, fz
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def quadratic(matrix, v):
+    """v^T A v of a matrix A (6, 6)."""
+    total = 0.0
+    for i in range(6):
+        for j in range(6):
+            total += v[i] * matrix[i, j] * v[j]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
+def hold(damping, mobility, excess, xipos, com, out):
+    """Hold the wrench `out` (6,), force and torque about `xipos`, below a rate.
+
+    It becomes (1 + e D L)^-1 of it, with the excess e the timestep less the longest one that needs
+    no holding, 1 over the sum r of all rates. A motion of rate q is then slowed down at
+    q / (1 + e q), which is no more than one over the timestep, since q <= r; and slow motions keep
+    their forces.
+    """
+    # torques about the centre of mass of the tree
+    x, y, z = difference(xipos, com)
+    w = np.empty(6)
+    w[3], w[4], w[5] = out[0], out[1], out[2]
+    w[0] = out[3] + y * out[2] - z * out[1]
+    w[1] = out[4] + z * out[0] - x * out[2]
+    w[2] = out[5] + x * out[1] - y * out[0]
+
+    a = np.empty((6, 6))
+    for i in range(6):
+        for j in range(6):
+            total = 1.0 if i == j else 0.0
+            for k in range(6):
+                total += excess * damping[i, k] * mobility[k, j]
+            a[i, j] = total
+    _solve(a, w)
+
+    # and back
+    out[0], out[1], out[2] = w[3], w[4], w[5]
+    out[3] = w[0] - y * out[2] + z * out[1]
+    out[4] = w[1] - z * out[0] + x * out[2]
+    out[5] = w[2] - x * out[1] + y * out[0]
+
+
+@njit(cache=True, error_model="numpy")
+def _solve(a, x):
+    """Solve a y = x for a matrix (6, 6) by elimination, y in the place of x; both are changed."""
+    for k in range(6):
+        # the largest of what is left leads
+        best = k
+        for i in range(k + 1, 6):
+            if abs(a[i, k]) > abs(a[best, k]):
+                best = i
+        for j in range(6):
+            a[k, j], a[best, j] = a[best, j], a[k, j]
+        x[k], x[best] = x[best], x[k]
+        for i in range(k + 1, 6):
+            factor = a[i, k] / a[k, k]
+            for j in range(k, 6):
+                a[i, j] -= factor * a[k, j]
+            x[i] -= factor * x[k]
+    for k in range(5, -1, -1):
+        for j in range(k + 1, 6):
+            x[k] -= a[k, j] * x[j]
+        x[k] /= a[k, k]
