@@ -20,7 +20,7 @@ from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
 from buoyancy_mj.loads.damping_arrays import resolve_damping
-from buoyancy_mj.loads.foil_arrays import find_foils, gather_foils
+from buoyancy_mj.loads.foil_arrays import PlacedFoil, find_foils, gather_foils
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays
 from buoyancy_mj.submersion.hull_set import HullSet
@@ -142,11 +142,13 @@ def build_load_model(
         owners=owners,
         bodies=np.unique([*owners, *(foil.body for foil in foils)]),
         sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
-        damping=resolve_damping(damping, model, hulls, water.density)
+        damping=resolve_damping(
+            damping, model, hulls, water.density, _leave_out_foils(model, settings, bodies, foils)
+        )
         if damping
         else empty(DampingArrays),
         foils=gather_foils(foils),
-        added_mass=resolve_added_mass(model, hulls, water.density, settings.added_mass),
+        added_mass=resolve_added_mass(model, hulls, water.density, settings.added_mass, foils),
     )
     if arrays.damping.radiates and not isinstance(packed, PackedHulls):
         radiating = arrays.damping.bodies[arrays.damping.radiation.any(axis=1)]
@@ -157,3 +159,14 @@ def build_load_model(
             "Damping(radiation=False), in a scene damping.radiation = false"
         )
     return LoadModel(hulls, sizes, packed, conform(arrays))
+
+
+def _leave_out_foils(
+    model: mujoco.MjModel,
+    settings: Settings,
+    bodies: Sequence[int] | None,
+    foils: Sequence[PlacedFoil],
+) -> Sequence[Hull] | None:
+    """The hulls without the geoms that are foils; None if there are no such geoms."""
+    geoms = {foil.geom for foil in foils if foil.geom is not None}
+    return find_hulls(model, settings.selection, bodies, geoms) if geoms else None

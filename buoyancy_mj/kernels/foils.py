@@ -1,7 +1,7 @@
 """Lift and drag of foils: fins, rudders, keels and wings, strip by strip along their span.
 
-The frame of a foil has its origin in the middle, x along the chord towards the leading edge, y along
-the span and z along the normal.
+The frame of a foil has its origin in the middle, x along the chord towards the leading edge, y
+along the span and z along the normal.
 """
 
 import math
@@ -97,7 +97,7 @@ def add_foils(
 
         # how fast it slows its body down
         if b != last:
-            holding.set_mobility(bodies, joints, mass_matrix, b, rows, mobility)
+            holding.set_mobility(joints, mass_matrix, b, rows, mobility)
             last = b
         com = bodies.subtree_com[bodies.body_rootid[b]]
         for k in range(CORNERS):
@@ -111,7 +111,7 @@ def add_foils(
         tree_rate = tree_rates[bodies.body_rootid[b]]
         if body_rates[b] > 0.0 and tree_rate * timestep > 1.0:
             excess = (timestep - 1.0 / tree_rate) * tree_rate / body_rates[b]
-            holding.set_mobility(bodies, joints, mass_matrix, b, rows, mobility)
+            holding.set_mobility(joints, mass_matrix, b, rows, mobility)
             _hold(foils, bodies, b, steepness, excess, mobility, push, r, out[b])
 
 
@@ -147,9 +147,10 @@ def _set_frame(foils, n, bodies, b, out):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _set_corner(steepness, k, middle, r, com, out):
-    """Write the push (6,) of a unit force along the normal at one of four corners; returns its weight.
+    """Write the push (6,) of a unit force along the normal at one of four corners.
 
     The four together have the sum and the moments of how steeply the force grows over the foil.
+    Returns the weight of the corner, the force per velocity that it stands for.
     """
     total = steepness[0]
     if not total > 0.0:

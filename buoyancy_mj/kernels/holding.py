@@ -14,7 +14,7 @@ from buoyancy_mj.kernels.vectors import difference
 
 
 @njit(cache=True, error_model="numpy")
-def set_mobility(bodies, joints, mass_matrix, b, rows, out):
+def set_mobility(joints, mass_matrix, b, rows, out):
     """Write J M^-1 J^T of a body to `out` (6, 6); `rows` (6, nv) are worked in.
 
     With MuJoCo's M = L^T D L only the joints that carry the body matter: L^-T leads from each to

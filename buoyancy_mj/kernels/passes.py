@@ -170,7 +170,7 @@ def add_panel_drag(arrays):
     panels.add_panels(
         loads.damping,
         loads.hulls,
-        loads.owners,
+        loads.damping.owners,
         engine.bodies,
         engine.geoms,
         loads.sea,

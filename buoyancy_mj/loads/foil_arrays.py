@@ -39,22 +39,27 @@ class PlacedFoil:
     """Its middle in the body's frame (3,) [m]."""
     body_from_foil: NDArray[np.float64]
     """Rotation (3, 3): x along the chord to the leading edge, y along the span, z the normal."""
+    span: float
+    """Span [m]."""
+    chord: float
+    """Longest chord [m]."""
+    thickness: float
+    """Thickness [m]."""
     foil: Foil
-    """What it is like, with its span, chord and thickness."""
+    """What it is like, as it is stated or as its geom or site has it."""
     elliptic: bool
     """Whether its outline is an ellipse, and not a rectangle."""
 
     @property
     def area(self) -> float:
         """Area of one side [m^2]."""
-        assert self.foil.span is not None and self.foil.chord is not None
         share = 0.25 * math.pi if self.elliptic else 1.0
-        return share * self.foil.span * self.foil.chord
+        return share * self.span * self.chord
 
     @property
     def aspect_ratio(self) -> float:
         """The aspect ratio that its lift has."""
-        return self.foil.aspect_ratio(self._mean_chord)
+        return self.foil.aspect_ratio(self.area / self.span)
 
     @property
     def lift_slope(self) -> float:
@@ -64,26 +69,20 @@ class PlacedFoil:
     @functools.cached_property
     def section(self) -> NDArray[np.float64]:
         """Its row of `kernels.polar`."""
-        return self.foil.section(self._mean_chord)
+        return self.foil.section(self.area / self.span)
 
     @functools.cached_property
     def strips(self) -> NDArray[np.float64]:
         """Its strips (n, 3), see `kernels.foils.Foils`."""
-        assert self.foil.span is not None and self.foil.chord is not None
         edges = np.linspace(-1.0, 1.0, STRIPS + 1)
         middles = 0.5 * (edges[1:] + edges[:-1])
-        chords = np.full(STRIPS, self.foil.chord)
+        chords = np.full(STRIPS, self.chord)
         if self.elliptic:
             # the area under the ellipse, strip by strip
             under = 0.5 * (edges * np.sqrt(1.0 - edges**2) + np.arcsin(edges))
             chords *= np.diff(under) / np.diff(edges)
-        widths = np.full(STRIPS, self.foil.span / STRIPS)
-        return np.column_stack([0.5 * self.foil.span * middles, chords, widths])
-
-    @property
-    def _mean_chord(self) -> float:
-        assert self.foil.span is not None
-        return self.area / self.foil.span
+        widths = np.full(STRIPS, self.span / STRIPS)
+        return np.column_stack([0.5 * self.span * middles, chords, widths])
 
 
 def find_foils(
@@ -133,17 +132,11 @@ def gather_foils(foils: Sequence[PlacedFoil]) -> Foils:
         bodies=np.array([foil.body for foil in foils], np.int64),
         middles=np.stack([foil.middle for foil in foils]),
         turns=np.stack([foil.body_from_foil.ravel() for foil in foils]),
-        sizes=np.array([_sizes(foil.foil) for foil in foils]),
+        sizes=np.array([(foil.span, foil.chord, foil.thickness) for foil in foils]),
         sections=np.stack([foil.section for foil in foils]),
         strips=np.vstack([foil.strips for foil in foils]),
         starts=np.cumsum([0, *(len(foil.strips) for foil in foils)]),
     )
-
-
-def _sizes(foil: Foil) -> tuple[float, float, float]:
-    """Span, chord and thickness [m]."""
-    assert foil.span is not None and foil.chord is not None and foil.thickness is not None
-    return foil.span, foil.chord, foil.thickness * foil.chord
 
 
 def _list_targets(model: mujoco.MjModel) -> dict[str, list[tuple[str, int]]]:
@@ -200,7 +193,11 @@ def _place(
     (what, index) = places[0]
     if what == "geom":
         kind, owner, size = model.geom_type[index], model.geom_bodyid[index], model.geom_size[index]
-        position, turn, shape = data.geom_xpos[index], data.geom_xmat[index], geom_kind(model, index)
+        position, turn, shape = (
+            data.geom_xpos[index],
+            data.geom_xmat[index],
+            geom_kind(model, index),
+        )
     else:
         kind, owner, size = model.site_type[index], model.site_bodyid[index], model.site_size[index]
         position, turn = data.site_xpos[index], data.site_xmat[index]
@@ -228,6 +225,9 @@ def _place(
         body=body,
         middle=body_from_world @ (position - data.xpos[body]),
         body_from_foil=body_from_world @ turn.reshape(3, 3),
+        span=span,
+        chord=chord,
+        thickness=thickness * chord,
         foil=dataclasses.replace(foil, chord=chord, span=span, thickness=thickness),
         elliptic=kind == _ELLIPSOID,
     )
