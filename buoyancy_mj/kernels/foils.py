@@ -110,13 +110,14 @@ def add_foils(
     for b in range(out.shape[0]):
         tree_rate = tree_rates[bodies.body_rootid[b]]
         if body_rates[b] > 0.0 and tree_rate * timestep > 1.0:
-            excess = (timestep - 1.0 / tree_rate) * tree_rate / body_rates[b]
+            # each body has its share of the rate that all may have
+            held = holding.excess(tree_rate * timestep) / body_rates[b]
             holding.set_mobility(joints, mass_matrix, b, rows, mobility)
-            _hold(foils, bodies, b, steepness, excess, mobility, push, r, out[b])
+            _hold(foils, bodies, b, steepness, held, mobility, push, r, out[b])
 
 
 @njit(cache=True, error_model="numpy")
-def _hold(foils, bodies, b, steepness, excess, mobility, push, r, out):
+def _hold(foils, bodies, b, steepness, time, mobility, push, r, out):
     """Hold the wrench `out` (6,) of the foils of one body, see `holding.hold`."""
     damping = np.zeros((6, 6))
     com = bodies.subtree_com[bodies.body_rootid[b]]
@@ -129,7 +130,7 @@ def _hold(foils, bodies, b, steepness, excess, mobility, push, r, out):
             for i in range(6):
                 for j in range(6):
                     damping[i, j] += weight * push[i] * push[j]
-    holding.hold(damping, mobility, excess, bodies.xipos[b], com, out)
+    holding.hold(damping, mobility, time, bodies.xipos[b], com, out)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -6,6 +6,8 @@ tree of bodies, from MuJoCo's factors of the mass matrix. Wrenches are torque, t
 centre of mass of the tree, as MuJoCo's `cdof` has velocities.
 """
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -58,37 +60,55 @@ def quadratic(matrix, v):
     return total
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def excess(stiffness):
+    """How far the sum of all rates is beyond what a timestep can bear.
+
+    It is the x of `hold` for the sum, where `stiffness` is that sum times the timestep: the root of
+    stiffness (1 + x) = 1 + x + x^2, and 0 where the stiffness is 1.
+    """
+    beyond = stiffness - 1.0
+    return 0.5 * (beyond + math.sqrt(beyond * beyond + 4.0 * beyond))
+
+
 @njit(cache=True, error_model="numpy")
-def hold(damping, mobility, excess, xipos, com, out):
+def hold(damping, mobility, time, xipos, com, out):
     """Hold the wrench `out` (6,), force and torque about `xipos`, below a rate.
 
-    It becomes (1 + e D L)^-1 of it, with the excess e the timestep less the longest one that needs
-    no holding, 1 over the sum r of all rates. A motion of rate q is then slowed down at
-    q / (1 + e q), which is no more than one over the timestep, since q <= r; and slow motions keep
-    their forces.
+    It becomes (1 + X) / (1 + X + X^2) of it, with X the `time` times D L. So fast motions lose most
+    of their force, and slow ones what is of second order. With `excess` over the sum of all rates
+    as the time, no motion is slowed down at more than one over the timestep: the held rate grows
+    with the rate, and that of a motion that has all of the sum is one over the timestep.
     """
     # torques about the centre of mass of the tree
     x, y, z = difference(xipos, com)
-    w = np.empty(6)
+    w, v = np.empty(6), np.empty(6)
     w[3], w[4], w[5] = out[0], out[1], out[2]
     w[0] = out[3] + y * out[2] - z * out[1]
     w[1] = out[4] + z * out[0] - x * out[2]
     w[2] = out[5] + x * out[1] - y * out[0]
 
-    a = np.empty((6, 6))
+    # X, then the two sides
+    rates, a = np.empty((6, 6)), np.empty((6, 6))
+    for i in range(6):
+        v[i] = w[i]
+        for j in range(6):
+            rates[i, j] = 0.0
+            for k in range(6):
+                rates[i, j] += time * damping[i, k] * mobility[k, j]
+            v[i] += rates[i, j] * w[j]
     for i in range(6):
         for j in range(6):
-            total = 1.0 if i == j else 0.0
+            a[i, j] = rates[i, j] + (1.0 if i == j else 0.0)
             for k in range(6):
-                total += excess * damping[i, k] * mobility[k, j]
-            a[i, j] = total
-    _solve(a, w)
+                a[i, j] += rates[i, k] * rates[k, j]
+    _solve(a, v)
 
     # and back
-    out[0], out[1], out[2] = w[3], w[4], w[5]
-    out[3] = w[0] - y * out[2] + z * out[1]
-    out[4] = w[1] - z * out[0] + x * out[2]
-    out[5] = w[2] - x * out[1] + y * out[0]
+    out[0], out[1], out[2] = v[3], v[4], v[5]
+    out[3] = v[0] - y * out[2] + z * out[1]
+    out[4] = v[1] - z * out[0] + x * out[2]
+    out[5] = v[2] - x * out[1] + y * out[0]
 
 
 @njit(cache=True, error_model="numpy")

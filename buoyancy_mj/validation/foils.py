@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import mujoco
-import numpy as np
 
 from buoyancy_mj.loads.foils import Foil
 from buoyancy_mj.sea.water import Water
@@ -80,10 +79,11 @@ def _slope(foil: Foil) -> float:
 
 
 def equilibrium_glide(slope: float) -> tuple[float, float]:
-    """Angle of attack [rad] and net mass [kg] of the glider on a glide of a slope [rad], at `SPEED`.
+    """Angle of attack [rad] and net mass [kg] of the glider at `SPEED`, by the slope [rad].
 
-    Graver (2005), eq. 6.4: the root of K_D a^2 + K_L tan(x) a + K_D0 = 0 that is nearer to 0, and
-    net weight that holds lift and drag.
+    Leonard and Graver (2001): drag over lift is minus the tangent of the slope, so that the angle
+    is the root of K_D a^2 + K_L tan(x) a + K_D0 = 0 that is nearer to 0; and the net weight holds
+    lift and drag.
     """
     tangent = math.tan(slope)
     root = math.sqrt(1.0 - 4.0 * DRAG_BY_LIFT * DRAG_AT_ZERO / (LIFT * tangent) ** 2)
@@ -106,9 +106,13 @@ def _glide() -> Sequence[Row]:
 
     forward, up = read(0), read(1)
     return [
-        Row("angle of attack at a glide of -25 degrees [degrees]", 2.023, math.degrees(angle), 1e-3),
+        Row(
+            "angle of attack at a glide of -25 degrees [degrees]", 2.023, math.degrees(angle), 1e-3
+        ),
         Row("net mass at 0.3 m/s [kg]", 0.04735, mass, 1e-3),
-        Row("slope of the glide, run [degrees]", -25.0, math.degrees(math.atan2(up, forward)), 0.01),
+        Row(
+            "slope of the glide, run [degrees]", -25.0, math.degrees(math.atan2(up, forward)), 0.01
+        ),
         Row("speed of the glide, run [m/s]", 0.3, math.hypot(forward, up), 0.01),
     ]
 
@@ -154,9 +158,10 @@ CASES = (
         "naca_0015",
         "A NACA 0015 over the full circle",
         "Sheldahl and Klimas 1981, *Aerodynamic Characteristics of Seven Symmetrical Airfoil "
-        "Sections Through 180-Degree Angle of Attack*, SAND80-2114, at a Reynolds number of 160,000",
-        "A foil between two walls, 15 % thick. That it stalls at 10 degrees and has a drag of 0.013 "
-        "is stated, as the measured section does.",
+        "Sections Through 180-Degree Angle of Attack*, SAND80-2114, at a Reynolds number of "
+        "160,000",
+        "A foil between two walls, 15 % thick. That it stalls at 10 degrees and has a drag of "
+        "0.013 is stated, as the measured section does.",
         _compare_section,
         "Past its stall the section has less lift than the plate that it is taken for, which does "
         "not last: at 45 degrees the two are alike.",
