@@ -1,4 +1,4 @@
-"""What a model's `<custom>` gives: texts by name, and numerics 'QUANTITY:BODY' by body."""
+"""What a model's `<custom>` gives: texts by name, foils, and numerics 'QUANTITY:BODY' by body."""
 
 import re
 from collections.abc import Sequence

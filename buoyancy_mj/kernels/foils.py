@@ -68,47 +68,48 @@ def add_foils(
     mobility, rows = np.empty((6, 6)), np.empty((6, joints.qvel.shape[0]))
     steepness = np.zeros((foils.bodies.shape[0], 5))
     body_rates, tree_rates = np.zeros(out.shape[0]), np.zeros(out.shape[0])
+    sizes, sections, strips, starts = foils.sizes, foils.sections, foils.strips, foils.starts
+    owners, roots, xipos, coms = foils.bodies, bodies.body_rootid, bodies.xipos, bodies.subtree_com
     last = -1
-    for n in range(foils.bodies.shape[0]):
-        b = foils.bodies[n]
+    for n in range(owners.shape[0]):
+        b = owners[n]
         middle = _set_frame(foils, n, bodies, b, r)
 
         # how deep its middle is, and how that changes along the span
         eta, gx, gy = tangent(sea.waves, middle[0], middle[1], time)
         depth = sea.level + eta - middle[2]
         deeper = gx * r[1] + gy * r[4] - r[7]
-        tallest = _height(foils.sizes[n, CHORD], foils.sizes[n, THICKNESS], r)
-        if depth + 0.5 * (abs(deeper) * foils.sizes[n, SPAN] + tallest) <= 0.0:
+        span, thickness = sizes[n, SPAN], sizes[n, THICKNESS]
+        tallest = _height(sizes[n, CHORD], thickness, r)
+        if depth + 0.5 * (abs(deeper) * span + tallest) <= 0.0:
             continue
 
         # its motion through the water, and what the water does to each strip
-        _set_flow(foils.sizes[n, SPAN], bodies, b, middle, r, sea, time, water, flow)
+        _set_flow(span, bodies, b, middle, r, sea, time, water, flow)
         wrench[:] = 0.0
-        for i in range(foils.starts[n], foils.starts[n + 1]):
-            along, chord, width = triple(foils.strips, i, 0)
-            tall = _height(chord, foils.sizes[n, THICKNESS], r) + width * abs(deeper)
+        section, steep = sections[n], steepness[n]
+        for i in range(starts[n], starts[n + 1]):
+            along, chord, width = triple(strips, i, 0)
+            tall = _height(chord, thickness, r) + width * abs(deeper)
             wet = min(max(0.5 + (depth + along * deeper) / tall, 0.0), 1.0)
             if wet > 0.0:
                 area = wet * chord * width
-                _add_strip(
-                    foils.sections[n], flow, along, chord, area, sea.density, wrench, steepness[n]
-                )
-        _deliver(middle, r, bodies.xipos[b], wrench, out[b])
+                _add_strip(section, flow, along, chord, area, sea.density, wrench, steep)
+        _deliver(middle, r, xipos[b], wrench, out[b])
 
         # how fast it slows its body down
         if b != last:
             holding.set_mobility(joints, mass_matrix, b, rows, mobility)
             last = b
-        com = bodies.subtree_com[bodies.body_rootid[b]]
         for k in range(CORNERS):
-            weight = _set_corner(steepness[n], k, middle, r, com, push)
+            weight = _set_corner(steep, k, middle, r, coms[roots[b]], push)
             rate = weight * holding.quadratic(mobility, push)
             body_rates[b] += rate
-            tree_rates[bodies.body_rootid[b]] += rate
+            tree_rates[roots[b]] += rate
 
     # held
     for b in range(out.shape[0]):
-        tree_rate = tree_rates[bodies.body_rootid[b]]
+        tree_rate = tree_rates[roots[b]]
         if body_rates[b] > 0.0 and tree_rate * timestep > 1.0:
             # each body has its share of the rate that all may have
             held = holding.excess(tree_rate * timestep) / body_rates[b]

@@ -22,23 +22,25 @@ def set_mobility(joints, mass_matrix, b, rows, out):
     With MuJoCo's M = L^T D L only the joints that carry the body matter: L^-T leads from each to
     those above it.
     """
+    cdof, parents = joints.cdof, joints.dof_parentid
+    lower, inverse, columns = mass_matrix.qLD, mass_matrix.qLDiagInv, mass_matrix.M_colind
+    firsts, counts = mass_matrix.M_rowadr, mass_matrix.M_rownnz
     last = last_dof(joints, b)
     i = last
     while i >= 0:
         for k in range(6):
-            rows[k, i] = joints.cdof[i, k]
-        i = joints.dof_parentid[i]
+            rows[k, i] = cdof[i, k]
+        i = parents[i]
     out[:, :] = 0.0
     i = last
     while i >= 0:
-        first = mass_matrix.M_rowadr[i]
-        for e in range(first, first + mass_matrix.M_rownnz[i] - 1):
+        for e in range(firsts[i], firsts[i] + counts[i] - 1):
             for k in range(6):
-                rows[k, mass_matrix.M_colind[e]] -= mass_matrix.qLD[e] * rows[k, i]
+                rows[k, columns[e]] -= lower[e] * rows[k, i]
         for k in range(6):
             for m in range(6):
-                out[k, m] += rows[k, i] * rows[m, i] * mass_matrix.qLDiagInv[i]
-        i = joints.dof_parentid[i]
+                out[k, m] += rows[k, i] * rows[m, i] * inverse[i]
+        i = parents[i]
 
 
 @njit(cache=True, error_model="numpy", inline="always")
