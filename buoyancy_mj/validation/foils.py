@@ -54,21 +54,12 @@ def _compare_polar(
 
 def _compare_slopes() -> Sequence[Row]:
     """Lift by the span of a foil."""
-    rudder = 0.9 * 2.0 * math.pi
-    rows = [
-        Row(
-            f"Whicker and Fehlner's slope, aspect ratio {aspect} [1/rad]",
-            published,
-            _slope(Foil(aspect=aspect, lift_slope=rudder)),
-            1e-3,
-        )
-        for aspect, published in ((1, 1.401), (2, 2.444), (3, 3.138))
-    ]
-    fins = Foil(aspect=2.21, lift_slope=rudder)
-    rows.append(Row("fins of the REMUS 100, by Hoerner [1/rad]", 3.117, _slope(fins), 0.2))
+    fins = Foil(aspect=2.21, lift_slope=0.9 * 2.0 * math.pi)
     wing = Foil(aspect=6.366, crossflow=0.0).coefficients(math.radians(5.71))[0]
-    rows.append(Row("elliptic wing, C_L at 5.71 degrees", 0.4765, float(wing[0]), 0.05))
-    return rows
+    return [
+        Row("fins of the REMUS 100, lift slope [1/rad]", 3.117, _slope(fins), 0.2),
+        Row("elliptic wing, C_L at 5.71 degrees", 0.4765, float(wing[0]), 0.05),
+    ]
 
 
 def _slope(foil: Foil) -> float:
@@ -178,11 +169,11 @@ CASES = (
     Case(
         "finite_span",
         "Lift of finite span",
-        "Whicker and Fehlner 1958, DTMB report 933; Prestero 2001, MIT, for the fins of the REMUS "
-        "100, with an effective aspect ratio of 2.21; and Prandtl's lifting line for the elliptic "
-        "wing",
-        "Slopes are those of the polar at zero lift. The section of rudders and fins has 0.9 times "
-        "the slope of thin aerofoil theory.",
+        "Prestero 2001, MIT, for the fins of the REMUS 100, by Hoerner's formula with an effective "
+        "aspect ratio of 2.21 and 0.9 times the slope of thin aerofoil theory; and Prandtl's "
+        "lifting line for the elliptic wing",
+        "The slope is that of the polar at zero lift, with the same section and aspect ratio. "
+        "The formula here is Whicker and Fehlner's for rudders, lower where the span is short.",
         _compare_slopes,
     ),
     Case(
