@@ -313,14 +313,17 @@ def test_a_light_rudder_on_a_hinge_keeps_the_force_that_its_boat_can_bear():
     assert held[1] == pytest.approx(free[1], rel=0.2)
 
 
-def test_light_flaps_on_hinges_flutter_within_bounds_at_a_long_step():
-    flap = """<body pos="-.2 {0} 0"><joint axis="0 1 0" damping=".01"/>
-      <geom size=".02" mass=".02" contype="0" conaffinity="0"/>
+@pytest.mark.parametrize("integrator", ["Euler", "RK4"])
+def test_light_flaps_on_hinges_gain_nothing_at_a_long_step(integrator):
+    # the flow passes a flap within 30 ms, and would stop its turning within 1 ms
+    flap = """<body pos="-.2 {0} 0"><joint axis="0 1 0"/>
+      <geom size=".02" mass=".02" pos="-.05 0 0" contype="0" conaffinity="0"/>
       <site name="flap_{1}" type="box" size=".05 .1 .003" pos="-.05 0 0"/></body>"""
     flaps = "".join(flap.format(0.25 * (i - 1.5), i) for i in range(4))
     texts = "".join(f'<text name="foil:flap_{i}" data="walls=1"/>' for i in range(4))
     model = mujoco.MjModel.from_xml_string(f"""
-      <mujoco><option timestep="0.02" gravity="0 0 0"/><custom>{texts}</custom>
+      <mujoco><option timestep="0.02" gravity="0 0 0" integrator="{integrator}"/>
+        <custom>{texts}</custom>
         <worldbody><body name="b" pos="0 0 -5"><freejoint/>
           <geom type="box" size=".3 .1 .05" density="1000"/>{flaps}</body></worldbody></mujoco>""")
     data = moving(model, [3.0, 0.1, -0.3, 0.2, 0.3, 0.1])
@@ -331,7 +334,7 @@ def test_light_flaps_on_hinges_flutter_within_bounds_at_a_long_step():
     with Buoyancy(model, damping=None).installed():
         for _ in range(200):
             mujoco.mj_step(model, data)
-            assert data.energy[1] < 1.02 * start
+            assert data.energy[1] < 1.05 * start
     assert data.energy[1] < 0.9 * start
 
 

@@ -94,7 +94,7 @@ def add_foils(
             wet = min(max(0.5 + (depth + along * deeper) / tall, 0.0), 1.0)
             if wet > 0.0:
                 area = wet * chord * width
-                _add_strip(section, flow, along, chord, area, sea.density, wrench, steep)
+                _add_strip(section, flow, along, chord, area, sea.density, timestep, wrench, steep)
         _deliver(middle, r, xipos[b], wrench, out[b])
 
         # how fast it slows its body down
@@ -206,7 +206,7 @@ def _set_flow(span, bodies, b, middle, r, sea, time, water, out):
 
 
 @njit(cache=True, error_model="numpy")
-def _add_strip(section, flow, along, chord, area, density, wrench, steepness):
+def _add_strip(section, flow, along, chord, area, density, timestep, wrench, steepness):
     """Add the force on a strip, and its torque about the middle, to `wrench` (6,).
 
     Both are in the axes of the foil. `steepness` (5,) gets the force per velocity along the normal,
@@ -246,8 +246,9 @@ def _add_strip(section, flow, along, chord, area, density, wrench, steepness):
     wrench[4] += couple - x * fz
     wrench[5] += x * fy - along * fx
 
-    # how steeply the force grows with the velocity
-    steep = pressure * (section[SLOPE] + section[PLATE])
+    # how steeply the force grows with the velocity, and with the angle that a step may bring: a
+    # strip that turns about a point a quarter of its chord away is a spring of speed over that
+    steep = pressure * (section[SLOPE] + section[PLATE]) * (1.0 + 4.0 * timestep * speed / chord)
     steepness[0] += steep
     steepness[1] += steep * along
     steepness[2] += steep * along * along
