@@ -31,6 +31,7 @@ from buoyancy_mj.loads.coefficients import read_coefficients as read_coefficient
 from buoyancy_mj.loads.damping import Damping as Damping
 from buoyancy_mj.loads.damping import Panels as Panels
 from buoyancy_mj.loads.damping import Silhouette as Silhouette
+from buoyancy_mj.loads.foils import Foil as Foil
 from buoyancy_mj.loads.loads import Loads as Loads
 from buoyancy_mj.loads.loads import Portion as Portion
 from buoyancy_mj.meshes.mesh import TriMesh as TriMesh

@@ -226,3 +226,37 @@ def reaction(model, buoyancy, data, slamming=False, step=1e-6):
     # about the centre of mass, in the world's axes
     push, torque = turn @ force[:3], turn @ force[3:]
     return np.concatenate([push, torque + np.cross(origin - data.xipos[body], push)])
+
+
+def foil_polar(angle, *, slope, camber, induced, crossflow, lost, stall, blend, drag, cd90, tips):
+    """Lift, drag and the camber's normal force of a foil at an angle of attack [rad]."""
+    sine, cosine = np.sin(angle), np.cos(angle)
+    fold = np.arctan2(abs(sine), abs(cosine))
+    share = np.clip((fold - stall + blend) / (2.0 * blend), 0.0, 1.0)
+    stalled = 3.0 * share**2 - 2.0 * share**3
+
+    # as vectors along the chord and along the normal; the foil moves along (cos, -sin)
+    along_lift, along_drag = np.array([sine, cosine]), np.array([-cosine, sine])
+    straight = slope * sine * cosine
+    cambered = -slope * camber * cosine * abs(cosine)
+    force = (straight + cambered) * along_lift + induced * (straight + cambered) ** 2 * along_drag
+    force = force + [0.0, crossflow * sine * abs(sine)]
+    suction = (straight * along_lift + induced * straight**2 * along_drag)[0]
+    force = force - [lost * suction, 0.0]
+    plate = np.array([0.0, cd90 * (1.0 / (0.56 + 0.44 * abs(sine)) - tips) * sine])
+    force = (1.0 - stalled) * force + stalled * plate + drag * along_drag
+    normal_of_camber = (1.0 - stalled) * cambered * cosine
+    centre = _pressure_centre(sine, cosine, stalled, slope, crossflow, plate[1])
+    return force @ along_lift, force @ along_drag, normal_of_camber, centre
+
+
+def _pressure_centre(sine, cosine, stalled, slope, crossflow, plate):
+    """Where the force of a foil without camber acts, in chords before the middle."""
+    if sine == 0.0:
+        return 0.25 * np.sign(cosine)
+    parts = [
+        ((1.0 - stalled) * slope * sine * cosine**2, 0.25 * np.sign(cosine)),
+        ((1.0 - stalled) * crossflow * sine * abs(sine), 0.0),
+        (stalled * plate, 0.75 * cosine / (4.0 + np.pi * abs(sine))),
+    ]
+    return sum(f * x for f, x in parts) / sum(f for f, _ in parts)

@@ -313,3 +313,35 @@ def test_the_thrusters_of_the_catamaran_drive_it_ahead_or_turn_it(key):
     assert data.qpos[0] > 2.0 if key == "ahead" else abs(data.qpos[0]) < 0.5
     turned = 2.0 * abs(np.arcsin(data.qpos[6]))
     assert turned < 0.05 if key == "ahead" else turned > 0.3
+
+
+# the glider ---------------------------------------------------------------------------------------
+
+
+def test_the_glider_glides_down_at_the_slope_that_its_readme_says():
+    model = loaded("glider")
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("descent").id)
+    # a push to the side: the fin holds it on its way
+    data.qvel[1] = 0.01
+    speeds = []
+    with Buoyancy(model).installed():
+        while data.time < 60.0:
+            mujoco.mj_step(model, data)
+            speeds.append(np.linalg.norm(data.qvel[:3]))
+    assert np.degrees(np.arctan2(data.qvel[2], data.qvel[0])) == pytest.approx(-23.0, abs=0.5)
+    assert np.degrees(2.0 * np.arcsin(data.qpos[5])) == pytest.approx(21.0, abs=0.6)
+    assert speeds[-1] == pytest.approx(speeds[-5000], rel=0.02)
+    assert np.abs(data.qvel[3:]).max() < 1e-3
+    assert abs(data.qvel[1]) < 1e-3
+
+
+def test_the_glider_states_the_added_mass_that_is_estimated_for_it():
+    model = loaded("glider")
+    estimate = Buoyancy(model, added_mass="estimate")
+    spec = mujoco.MjSpec.from_file(str(MODELS["glider"]))
+    for numeric in list(spec.numerics):
+        spec.delete(numeric)
+    bare = Buoyancy(spec.compile(), added_mass="estimate").added_mass.matrices[0].reshape(6, 6)
+    stated = estimate.added_mass.matrices[0].reshape(6, 6)
+    assert np.diag(stated) == pytest.approx(np.diag(bare), rel=0.02)

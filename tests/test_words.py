@@ -424,7 +424,7 @@ def test_the_water_of_an_environment_gives_way_to_the_scenes(tmp_path):
 # words that find nothing --------------------------------------------------------------------------
 
 POSSIBLE = (
-    "possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, buoyancy_hull, "
+    "possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, buoyancy_hull, foil:NAME, "
     "linear_damping:BODY, quadratic_damping:BODY, radiation_damping:BODY"
 )
 PART = "if only a part of its file was attached, delete the word from the spec before that"

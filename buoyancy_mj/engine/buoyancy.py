@@ -106,7 +106,7 @@ class Buoyancy(ReadOnly):
 
         # the bodies
         self.bodies = self._acting.load_model.arrays.bodies
-        """Indices of the bodies that have hulls."""
+        """Indices of the bodies that have hulls or foils."""
         groups = group_floating_bodies(model)
         afloat = [group for group in groups if np.isin(group, self.bodies).any()]
         self.floating = np.sort(np.concatenate(afloat))

@@ -20,6 +20,7 @@ from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
 from buoyancy_mj.loads.damping_arrays import resolve_damping
+from buoyancy_mj.loads.foil_arrays import PlacedFoil, find_foils, gather_foils
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.submersion.exact import PackedHulls, sea_arrays
 from buoyancy_mj.submersion.hull_set import HullSet
@@ -50,6 +51,7 @@ class LoadModel:
             "wave_pressure": self.arrays.sea.pressure != PressureModel.archimedes,
             "drag": len(damping.bodies) > 0,
             "radiation": damping.radiates,
+            "foil": len(self.arrays.foils.bodies) > 0,
             "added_mass": len(self.arrays.added_mass.bodies) > 0,
             "slamming": self.arrays.added_mass.slamming != 0,
         }
@@ -63,6 +65,7 @@ class LoadModel:
             passes.add_drag: "drag" in self.causes,
             passes.add_panel_drag: len(self.arrays.damping.panels) > 0,
             passes.add_radiation: "radiation" in self.causes,
+            passes.add_foils: "foil" in self.causes,
             passes.add_reaction: "added_mass" in self.causes,
         }
         return tuple(load for load in passes.LOADS if acts.get(load, True))
@@ -134,10 +137,11 @@ def build_load_model(
     packed = settings.method.pack(hull_set, water)
 
     # what acts on them
+    foils = find_foils(model, bodies)
     arrays = LoadArrays(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
-        bodies=np.unique(owners),
+        bodies=np.unique([*owners, *(foil.body for foil in foils)]),
         sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
         damping=resolve_damping(
             damping,
@@ -145,11 +149,13 @@ def build_load_model(
             hulls,
             water.density,
             packed.hulls if isinstance(packed, PackedHulls) else None,
+            _leave_out_foils(model, settings, bodies, foils),
         )
         if damping
         else empty(DampingArrays),
+        foils=gather_foils(foils),
         added_mass=resolve_added_mass(
-            model, hulls, water.density, settings.added_mass, slamming=settings.slamming
+            model, hulls, water.density, settings.added_mass, foils, slamming=settings.slamming
         ),
     )
     if arrays.damping.radiates and not isinstance(packed, PackedHulls):
@@ -161,3 +167,14 @@ def build_load_model(
             "Damping(radiation=False), in a scene damping.radiation = false"
         )
     return LoadModel(hulls, sizes, packed, conform(arrays))
+
+
+def _leave_out_foils(
+    model: mujoco.MjModel,
+    settings: Settings,
+    bodies: Sequence[int] | None,
+    foils: Sequence[PlacedFoil],
+) -> Sequence[Hull] | None:
+    """The hulls without the geoms that are foils; None if there are no such geoms."""
+    geoms = {foil.geom for foil in foils if foil.geom is not None}
+    return find_hulls(model, settings.selection, bodies, geoms) if geoms else None

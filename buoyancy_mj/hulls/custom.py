@@ -1,4 +1,4 @@
-"""What a model's `<custom>` gives: texts by name, and numerics 'QUANTITY:BODY' by body."""
+"""What a model's `<custom>` gives: texts by name, foils, and numerics 'QUANTITY:BODY' by body."""
 
 import re
 from collections.abc import Sequence
@@ -14,6 +14,21 @@ from buoyancy_mj.hulls.replicas import find_originals
 
 QUANTITIES = ("added_mass", "linear_damping", "quadratic_damping", "radiation_damping")
 """Quantities of the numerics 'QUANTITY:BODY' by which a file states what it knows of a body."""
+
+
+FOIL = "foil"
+"""What the texts 'foil:NAME' begin with, by which a file states that a geom or a site is a foil."""
+
+
+class FoilText(NamedTuple):
+    """A text 'foil:NAME'."""
+
+    name: str
+    """Its name in the model, with what an attachment put around it."""
+    target: str
+    """The name of its geom or site in the model."""
+    text: str
+    """What it says."""
 
 
 class BodyNumeric(NamedTuple):
@@ -65,6 +80,25 @@ def split_quantity(name: str) -> tuple[str, str] | None:
     """
     match = re.search(rf"({'|'.join(QUANTITIES)}):", name)
     return (match[1], name[: match.start()] + name[match.end() :]) if match else None
+
+
+def split_foil(name: str) -> str | None:
+    """The name of the geom or site of a name 'foil:NAME'; None of another name.
+
+    What an attachment put around the name stands around that of the geom too, as for
+    `split_quantity`.
+    """
+    before, found, after = name.partition(f"{FOIL}:")
+    return before + after if found else None
+
+
+def read_foil_texts(model: mujoco.MjModel) -> list[FoilText]:
+    """All texts 'foil:NAME' of a model, whether there is such a geom or site or not."""
+    return [
+        FoilText(name, target, text)
+        for name, text in read_all_texts(model).items()
+        if (target := split_foil(name)) is not None
+    ]
 
 
 def read_body_numerics(model: mujoco.MjModel) -> list[BodyNumeric]:

@@ -2,7 +2,7 @@
 
 import functools
 import warnings
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 import mujoco
@@ -38,6 +38,7 @@ def find_hulls(
     model: mujoco.MjModel,
     selection: Selection = Selection(),
     bodies: Sequence[int] | None = None,
+    leave_out: Collection[int] = (),
 ) -> tuple[Hull, ...]:
     """Find the hulls of a model; geoms of one body that overlap are joined into one.
 
@@ -47,6 +48,7 @@ def find_hulls(
         model: any model.
         selection: which geoms displace water, and as what.
         bodies: indices of the bodies whose geoms may displace; None for all.
+        leave_out: indices of geoms that are left out of those that displace.
 
     Raises:
         ModelError: no geom is left, or a pattern or anything else in `<custom>` finds nothing to
@@ -55,9 +57,8 @@ def find_hulls(
     """
     verdicts = judge_geoms(model, selection, bodies)
     geoms = [verdict.geom for verdict in verdicts if verdict.displaces]
-    return build_hulls(
-        model, geoms, parse_shapes(model, geoms, selection), parse_fills(model, geoms, selection)
-    )
+    shapes, fills = parse_shapes(model, geoms, selection), parse_fills(model, geoms, selection)
+    return build_hulls(model, [geom for geom in geoms if geom not in leave_out], shapes, fills)
 
 
 def build_hulls(

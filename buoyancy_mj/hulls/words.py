@@ -12,10 +12,13 @@ import mujoco
 
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.custom import (
+    FOIL,
     QUANTITIES,
     read_all_numerics,
     read_all_texts,
+    read_foil_texts,
     read_tuple_names,
+    split_foil,
     split_quantity,
 )
 from buoyancy_mj.hulls.names import geom_name
@@ -29,8 +32,9 @@ from buoyancy_mj.hulls.scopes import (
 )
 from buoyancy_mj.hulls.selection import CUSTOM_TEXTS, split_words
 
-_ALIKE = 0.8
-"""Likeness from which a name counts as a misspelt one of ours, as `difflib` measures it."""
+_ALIKE, _ALIKE_FOIL = 0.8, 0.88
+"""Likeness from which a name counts as a misspelt one of ours, as `difflib` measures it; the word
+'foil' is short, and 'oil' is none of ours."""
 
 
 class Choice(NamedTuple):
@@ -81,6 +85,8 @@ class FileWords:
                 scope = find_scope(name, f"{quantity[0]}:")
                 assert scope is not None
                 scopes.add(Scope(scope.prefix))
+        for foil in read_foil_texts(self.model):
+            scopes.add(Scope(foil.name.partition(f"{FOIL}:")[0]))
         slashes = find_slash_scopes(self.model, scopes) - scopes
         belongings = assign_geoms(self.model, (scopes | slashes) - {BASE})
         named = {scope for scope in slashes if self._names(scope, belongings)}
@@ -151,15 +157,15 @@ def check_custom_names(model: mujoco.MjModel) -> None:
             )
         known = needed and _is_plausible(model, name)
         if not known and (near := _find_near_keyword(name) or _find_near_colon(model, name)):
+            keywords = [*CUSTOM_TEXTS.values(), f"{FOIL}:NAME", *(f"{q}:BODY" for q in QUANTITIES)]
             raise ModelError(
-                f"the {kind} '{name}' is none that water reads; "
-                f"{choices(near, [*CUSTOM_TEXTS.values(), *(f'{q}:BODY' for q in QUANTITIES)])}"
+                f"the {kind} '{name}' is none that water reads; {choices(near, keywords)}"
             )
 
 
 def _kind_of_keyword(name: str) -> str:
     """The kind of element that a name of ours needs; '' for a name that is not ours."""
-    if any(keyword in name for keyword in CUSTOM_TEXTS.values()):
+    if any(keyword in name for keyword in CUSTOM_TEXTS.values()) or split_foil(name) is not None:
         return "text"
     return "numeric" if split_quantity(name) else ""
 
@@ -185,6 +191,8 @@ def _find_near_keyword(name: str) -> str:
     whole = name.rpartition("/")[2]
     if not colon and whole in QUANTITIES:
         return f"{whole}:BODY"
+    if colon and _likeness(before, FOIL) >= _ALIKE_FOIL:
+        return f"{FOIL}:NAME"
     keywords = QUANTITIES if colon else tuple(CUSTOM_TEXTS.values())
     near = ((_likeness(before, keyword), keyword) for keyword in keywords)
     likeness, keyword = max(near)
@@ -196,12 +204,17 @@ def _find_near_keyword(name: str) -> str:
 def _find_near_colon(model: mujoco.MjModel, name: str) -> str:
     """The keyword of a name that has another sign for the colon, as 'added_mass_hull'.
 
-    What stands behind the sign must be the name of a body; '' if there is none.
+    What stands behind the sign must be the name of a body, or of a geom or a site for a foil; ''
+    if there is none.
     """
-    match = re.search(rf"({'|'.join(QUANTITIES)})[\W_]+(?=\w)", name)
+    match = re.search(rf"({'|'.join(QUANTITIES)}|{FOIL})[\W_]+(?=\w)", name)
     if match is None:
         return ""
     named = name[: match.start()] + name[match.end() :]
+    if match[1] == FOIL:
+        geoms = {str(model.geom(geom).name) for geom in range(model.ngeom)}
+        sites = {str(model.site(site).name) for site in range(model.nsite)}
+        return f"{FOIL}:NAME" if named in geoms | sites else ""
     bodies = (str(model.body(body).name) for body in range(1, model.nbody))
     return f"{match[1]}:BODY" if named in bodies else ""
 

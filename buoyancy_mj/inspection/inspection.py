@@ -20,6 +20,7 @@ from buoyancy_mj.hulls.tethers import list_roots
 from buoyancy_mj.hulls.verdicts import judge_geoms
 from buoyancy_mj.inspection.geoms import GeomInspection, inspect_geom
 from buoyancy_mj.inspection.vessels import VesselInspection, inspect_vessel
+from buoyancy_mj.loads.foil_arrays import PlacedFoil, find_foils
 from buoyancy_mj.meshes.overlaps import find_close_pairs, measure_overlaps
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.building import build_vessel_from_hulls
@@ -49,6 +50,8 @@ class Inspection:
     """All geoms of the model, in its order."""
     overlaps: tuple[Overlap, ...]
     """Hulls of different bodies that overlap."""
+    foils: tuple[PlacedFoil, ...]
+    """Its foils: fins, rudders, keels and wings."""
     vessels: tuple[VesselInspection, ...]
     """Each vessel: a kinematic tree with hulls, or what welds and connects hold together."""
     problems: tuple[str, ...]
@@ -71,7 +74,7 @@ def inspect_model(
         title: title of the report.
 
     Raises:
-        ModelError: no geom displaces water, or the selection makes no sense.
+        ModelError: no geom displaces water, or the selection or a foil makes no sense.
     """
     water = water or Water()
 
@@ -84,12 +87,13 @@ def inspect_model(
         inspect_geom(model, verdict, selected, forms, fill=fills.get(verdict.geom, 1.0))
         for verdict in verdicts
     )
+    foils = find_foils(model)
     problems = [geom.problem for geom in geoms if geom.problem]
     sound = [
         verdict.geom for verdict, geom in zip(verdicts, geoms, strict=True) if geom.mesh is not None
     ]
     if not sound:
-        return Inspection(title, water, geoms, (), (), tuple(problems))
+        return Inspection(title, water, geoms, (), foils, (), tuple(problems))
 
     # the hulls; the report names repairs with the meshes, so they are no problems here
     hulls, notices = _build_hulls(model, sound, forms, fills)
@@ -110,6 +114,7 @@ def inspect_model(
         water=water,
         geoms=geoms,
         overlaps=_find_overlaps(model, hulls),
+        foils=foils,
         vessels=tuple(vessels),
         problems=(*problems, *notices),
     )

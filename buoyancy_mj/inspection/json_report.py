@@ -9,6 +9,8 @@ import numpy as np
 from buoyancy_mj.inspection.geoms import GeomInspection
 from buoyancy_mj.inspection.inspection import Inspection
 from buoyancy_mj.inspection.vessels import BuoyancyBudget, VesselInspection
+from buoyancy_mj.kernels.polar import STALL
+from buoyancy_mj.loads.foil_arrays import PlacedFoil
 from buoyancy_mj.statics.equilibrium import Equilibrium
 
 _DERIVED = (
@@ -31,6 +33,7 @@ def to_json(inspection: Inspection) -> dict[str, Any]:
             {"hulls": [one, other], "volume": _convert(volume)}
             for one, other, volume in inspection.overlaps
         ],
+        "foils": [_convert_foil(foil) for foil in inspection.foils],
         "floating": [_convert_vessel(vessel) for vessel in inspection.vessels],
         "problems": list(inspection.problems),
     }
@@ -60,6 +63,19 @@ def _convert_geom(geom: GeomInspection) -> dict[str, Any]:
         faults = _read_fields(geom.diagnosis, leave_out=("mesh", "holes", "name"))
         result["mesh"] = faults | {"holes": holes}
     return result
+
+
+def _convert_foil(foil: PlacedFoil) -> dict[str, Any]:
+    """A foil: its size, and how it lifts."""
+    return {
+        "name": foil.name,
+        "span": foil.span,
+        "chord": foil.chord,
+        "area": foil.area,
+        "aspect_ratio": _convert(foil.aspect_ratio),
+        "lift_slope": foil.lift_slope,
+        "stall": float(foil.section[STALL]),
+    }
 
 
 def _convert_vessel(inspection: VesselInspection) -> dict[str, Any]:

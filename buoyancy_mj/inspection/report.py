@@ -9,8 +9,10 @@ from rich.text import Text
 
 from buoyancy_mj.inspection.geom_sections import describe_geoms, describe_meshes
 from buoyancy_mj.inspection.inspection import Inspection, Overlap
-from buoyancy_mj.inspection.tables import Section, format_number
+from buoyancy_mj.inspection.tables import Section, format_degrees, format_number
 from buoyancy_mj.inspection.vessel_sections import describe_vessel
+from buoyancy_mj.kernels.polar import STALL
+from buoyancy_mj.loads.foil_arrays import PlacedFoil
 
 
 def list_sections(inspection: Inspection) -> tuple[Section, ...]:
@@ -21,6 +23,8 @@ def list_sections(inspection: Inspection) -> tuple[Section, ...]:
     ]
     if inspection.overlaps:
         sections.append(_describe_overlaps(inspection.overlaps))
+    if inspection.foils:
+        sections.append(_describe_foils(inspection.foils))
     for vessel in inspection.vessels:
         sections += describe_vessel(vessel, alone=len(inspection.vessels) == 1)
     if inspection.problems:
@@ -63,6 +67,24 @@ def _describe_overlaps(overlaps: Sequence[Overlap]) -> Section:
         title="Overlaps between bodies",
         header=("hull", "hull", "litres counted twice"),
         rows=tuple((one, other, format_number(1e3 * volume)) for one, other, volume in overlaps),
+    )
+
+
+def _describe_foils(foils: Sequence[PlacedFoil]) -> Section:
+    """Fins, rudders, keels and wings."""
+    return Section(
+        title="Foils",
+        header=("foil", "area [m^2]", "aspect ratio", "lift slope [1/rad]", "stall [degrees]"),
+        rows=tuple(
+            (
+                foil.name,
+                format_number(foil.area),
+                format_number(foil.aspect_ratio),
+                format_number(foil.lift_slope),
+                format_degrees(float(foil.section[STALL])),
+            )
+            for foil in foils
+        ),
     )
 
 

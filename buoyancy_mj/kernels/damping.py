@@ -64,6 +64,8 @@ class DampingArrays(NamedTuple):
     """Damping by the waves that a body makes, in columns `HEAVE` to `WATERPLANE`."""
     panels: Annotated[Doubles, ("n", 5)]
     """Drag by panels, in columns `panels.LEADING` to `DENSITY`; no rows if no body has it."""
+    owners: Annotated[Words, ("h",)]
+    """Body of each hull whose panels drag; -1 for a foil, which has drag of its own."""
     members: Annotated[Words, ("m",)]
     """The bodies and all that is welded to each, one after the other."""
     member_starts: Annotated[Words, ("n + 1",)]

@@ -86,6 +86,10 @@ class MassMatrix(NamedTuple):
     """Column of each element."""
     M: Annotated[Doubles, "mjData", ("nC",)]
     """The elements, which the water's added mass is written to."""
+    qLD: Annotated[Doubles, "mjData", ("nC",)]  # noqa: N815 - MuJoCo's name
+    """L of the factorization L^T D L of the mass matrix, without the added mass of this pass."""
+    qLDiagInv: Annotated[Doubles, "mjData", ("nv",)]  # noqa: N815 - MuJoCo's name
+    """One over D."""
 
 
 class Equalities(NamedTuple):

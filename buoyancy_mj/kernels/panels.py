@@ -34,7 +34,7 @@ LEAST_REYNOLDS = 1e4
 def add_panels(
     damping,  # `damping.DampingArrays`
     hulls,  # `hulls.Hulls`
-    owners,  # (h,) body of each hull
+    owners,  # (h,) body of each hull that drags
     bodies,  # `multibody.Bodies`
     geoms,  # `multibody.Geoms`
     sea,  # `sea.Sea`

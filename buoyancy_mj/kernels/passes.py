@@ -13,9 +13,19 @@ import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
-from buoyancy_mj.kernels import damping, inertia, panels, pressure, radiation, reaction, wrenches
+from buoyancy_mj.kernels import (
+    damping,
+    foils,
+    inertia,
+    panels,
+    pressure,
+    radiation,
+    reaction,
+    wrenches,
+)
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.damping import DampingArrays
+from buoyancy_mj.kernels.foils import Foils
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.kernels.multibody import PGS, Engine
@@ -38,9 +48,10 @@ class LoadArrays(NamedTuple):
     owners: Annotated[Words, ("h",)]
     """Body of each hull."""
     bodies: Annotated[Words, ("b",)]
-    """Bodies that have hulls."""
+    """Bodies that have hulls or foils."""
     sea: Sea
     damping: DampingArrays
+    foils: Foils
     added_mass: AddedMass
 
 
@@ -54,6 +65,7 @@ class Causes(NamedTuple):
     wave_pressure: Annotated[Doubles, ("nbody", 6)]
     drag: Annotated[Doubles, ("nbody", 6)]
     radiation: Annotated[Doubles, ("nbody", 6)]
+    foil: Annotated[Doubles, ("nbody", 6)]
     added_mass: Annotated[Doubles, ("nbody", 6)]
     slamming: Annotated[Doubles, ("nbody", 6)]
 
@@ -169,7 +181,7 @@ def add_panel_drag(arrays):
     panels.add_panels(
         loads.damping,
         loads.hulls,
-        loads.owners,
+        loads.damping.owners,
         engine.bodies,
         engine.geoms,
         loads.sea,
@@ -199,6 +211,22 @@ def add_radiation(arrays):
 
 
 @register_jitable
+def add_foils(arrays):
+    """Lift and drag of fins, rudders, keels and wings."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    foils.add_foils(
+        loads.foils,
+        engine.bodies,
+        engine.joints,
+        engine.mass_matrix,
+        loads.sea,
+        engine.time,
+        engine.option.timestep,
+        record.causes.foil,
+    )
+
+
+@register_jitable
 def add_reaction(arrays):
     """What added mass does beside its inertia, and what the water keeps of it in an entry."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -222,6 +250,7 @@ LOADS = (
     add_drag,
     add_panel_drag,
     add_radiation,
+    add_foils,
     add_reaction,
 )
 """All loads, in the order in which they are added."""

@@ -13,8 +13,10 @@ from buoyancy_mj.hulls.custom import find_body, read_numerics
 from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.inertia import AddedMass
+from buoyancy_mj.loads.foil_arrays import PlacedFoil
 from buoyancy_mj.loads.full_inertia import QUANTITY
 from buoyancy_mj.loads.matrices import move_to_origin, parse_matrix
+from buoyancy_mj.loads.plates import estimate_plate
 from buoyancy_mj.meshes.mesh import TriMesh
 
 SOURCES = ("model", "estimate", "none")
@@ -47,6 +49,7 @@ def resolve_added_mass(
     hulls: Sequence[Hull],
     density: float,
     source: str | Mapping[str, ArrayLike] | None = "model",
+    foils: Sequence[PlacedFoil] = (),
     *,
     slamming: bool = False,
 ) -> AddedMass:
@@ -57,6 +60,7 @@ def resolve_added_mass(
         hulls: its hulls.
         density: of the water [kg/m^3], for estimates.
         source: one of `SOURCES`, or matrices (6, 6) or diagonals (6,) by the name of the body.
+        foils: its foils; the estimate adds the plate of each that is no part of a hull.
         slamming: whether the water keeps the momentum that an entry takes.
 
     Raises:
@@ -72,6 +76,10 @@ def resolve_added_mass(
     if source == "estimate":
         for body in by_body.keys() - matrices.keys():
             matrices[body] = estimate_added_mass(by_body[body], density)
+            displacing = {geom for hull in by_body[body] for geom in hull.geoms}
+            for foil in foils:
+                if foil.body == body and foil.geom not in displacing:
+                    matrices[body] = matrices[body] + estimate_plate(foil, density)
 
     # in the order of the model
     bodies = sorted(matrices)

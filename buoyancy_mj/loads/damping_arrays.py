@@ -42,13 +42,15 @@ class _Shape(NamedTuple):
     """The hulls of one body, in its frame."""
 
     meshes: list[TriMesh]
+    dragging: list[TriMesh]
+    """Those whose shape makes drag: a foil has its own."""
     volume: float
     """Volume that they displace [m^3]."""
     centre: NDArray[np.float64]
     """Its centroid (3,) [m]."""
 
-    def silhouettes(self) -> Silhouettes:
-        return measure_silhouettes(self.meshes, self.centre)
+    def silhouettes(self, meshes: list[TriMesh]) -> Silhouettes:
+        return measure_silhouettes(meshes, self.centre)
 
 
 def resolve_damping(
@@ -57,6 +59,7 @@ def resolve_damping(
     hulls: Sequence[Hull],
     density: float,
     packed: Hulls | None = None,
+    dragging: Sequence[Hull] | None = None,
 ) -> DampingArrays:
     """Find the damping of the bodies that have hulls.
 
@@ -66,6 +69,8 @@ def resolve_damping(
         hulls: its hulls.
         density: of the water [kg/m^3], for estimates.
         packed: the same hulls as kernels read them, for drag by panels.
+        dragging: the hulls without those geoms that are foils, whose drag is no estimate's; None
+            for all.
 
     Raises:
         ModelError: a body without mass, or numerics of the model that make no sense.
@@ -76,8 +81,13 @@ def resolve_damping(
     members = [np.flatnonzero(model.body_weldid == body) for body in bodies]
     for body, group in zip(bodies, members, strict=True):
         _check_mass(model, body, group)
+    without_foils = group_by_body(hulls if dragging is None else dragging)
     shapes = {
-        body: _Shape([hull.mesh_in_body for hull in group], *combine_volumes(group))
+        body: _Shape(
+            [hull.mesh_in_body for hull in group],
+            [hull.mesh_in_body for hull in without_foils.get(body, [])],
+            *combine_volumes(group),
+        )
         for body, group in by_body.items()
     }
 
@@ -100,6 +110,7 @@ def resolve_damping(
         ),
         radiation=radiation,
         panels=panels if panels.any() else panels[:0],
+        owners=_list_owners(hulls, hulls if dragging is None else dragging),
         members=np.concatenate(members).astype(np.int64),
         member_starts=np.cumsum([0, *(len(group) for group in members)]),
         group=np.array([group_of.get(body, -1) for body in bodies]),
@@ -123,6 +134,13 @@ def _arrange_groups(
     )
 
 
+def _list_owners(hulls: Sequence[Hull], dragging: Sequence[Hull]) -> NDArray[np.int64]:
+    """The body of each hull; -1 for one of which no geom makes drag."""
+    geoms = {geom for hull in dragging for geom in hull.geoms}
+    owners = [hull.body if geoms.intersection(hull.geoms) else -1 for hull in hulls]
+    return np.array(owners, np.int64)
+
+
 def _check_mass(model: mujoco.MjModel, body: int, members: NDArray[np.int64]) -> None:
     """Refuse a body that has no mass, together with what is welded to it."""
     mass = float(model.body_mass[members].sum())
@@ -142,7 +160,7 @@ def _resolve_radiation(
     for row, (body, shape) in zip(rows, shapes.items(), strict=True):
         if body in numerics:
             row[:3] = _check_numbers(model, body, "radiation", numerics[body], (3,))
-            row[3] = shape.silhouettes().areas[2].sum()
+            row[3] = shape.silhouettes(shape.meshes).areas[2].sum()
     return rows
 
 
@@ -176,8 +194,8 @@ def _resolve_viscous(
 def _estimate(
     viscous: Silhouette | Panels | None, shape: _Shape, density: float, gravity: float
 ) -> _Viscous:
-    """Drag as the user chose to estimate it."""
-    if viscous is None:
+    """Drag as the user chose to estimate it; none of what has no hulls but foils."""
+    if viscous is None or not shape.dragging:
         return _Viscous()
     if isinstance(viscous, Panels):
         return _prepare_panels(viscous, shape, density)
@@ -191,6 +209,7 @@ def _join_shapes(shapes: Mapping[int, _Shape], group: WeldedGroup) -> _Shape:
     centres = [position + rotation @ shape.centre for shape, rotation, position in members]
     return _Shape(
         [mesh.transformed(turn, at) for shape, turn, at in members for mesh in shape.meshes],
+        [mesh.transformed(turn, at) for shape, turn, at in members for mesh in shape.dragging],
         float(volumes.sum()),
         volumes @ centres / volumes.sum(),
     )
@@ -215,7 +234,7 @@ def _read_viscous(
 
 def _prepare_panels(panels: Panels, shape: _Shape, density: float) -> _Viscous:
     """Drag by panels, which the kernel finds in each step from these numbers."""
-    vertices = np.vstack([mesh.vertices for mesh in shape.meshes])
+    vertices = np.vstack([mesh.vertices for mesh in shape.dragging])
     length = float(np.ptp(vertices, axis=0).max())
     leading = panels.coefficient * 2.0 / 3.0
     trailing = panels.coefficient / 3.0
@@ -226,7 +245,7 @@ def _estimate_viscous(
     silhouette: Silhouette, shape: _Shape, density: float, gravity: float
 ) -> _Viscous:
     """Drag estimated from silhouettes; its linear part equals the quadratic one at a low speed."""
-    silhouettes = shape.silhouettes()
+    silhouettes = shape.silhouettes(shape.dragging)
     quadratic = estimate_drag(silhouette.coefficient, silhouette.friction, density, silhouettes)
     slow = silhouette.linear_froude * math.sqrt(gravity * silhouettes.length)
     slow_turn = slow / (0.5 * silhouettes.length)

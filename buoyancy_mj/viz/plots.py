@@ -20,6 +20,7 @@ COLOURS: Mapping[str, Colour] = {
     "wave_pressure": (80, 200, 190),
     "drag": (240, 90, 60),
     "radiation": (240, 150, 200),
+    "foil": (150, 210, 70),
     "added_mass": (170, 120, 230),
     "slamming": (190, 230, 90),
 }
