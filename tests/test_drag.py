@@ -50,6 +50,26 @@ def test_a_hidden_part_adds_nothing_to_the_silhouette():
     )
 
 
+def test_along_the_flow_a_plate_has_the_friction_of_its_sides():
+    option = Damping(viscous=Silhouette(friction=0.003))
+    along = damping('<geom type="box" size=".5 .2 .0005"/>', option).quadratic[0, 0]
+    sides = 0.5 * 1000.0 * 0.003 * 2.0 * 0.4
+    front = 0.5 * 1000.0 * 1.05 * 0.82 * 0.4 * 0.001
+    assert along == pytest.approx(sides + front, rel=1e-2)
+
+
+def test_drag_along_a_cylinder_changes_smoothly_with_its_length():
+    # flow closes on the sides from 0.55 to 2.2 diameters on
+    lengths = np.linspace(0.3, 3.0, 10)
+    found = [
+        coefficients(f'<geom type="cylinder" size=".1 {0.1 * x}"/>', [1, 1, np.pi * 0.01])[2]
+        for x in lengths
+    ]
+    friction = 0.0075 * 4.0 * lengths
+    closed = np.interp(lengths, (0.55, 2.2), (0.0, 1.0))
+    assert found == pytest.approx(1.05 * (1.0 - 0.18 * closed) + friction, rel=1e-2)
+
+
 def test_turning_a_plate_meets_the_flow_at_each_strips_own_speed():
     # 1/2 rho C int |x|^3 dA over a plate 2 a long and 2 b wide: 1/2 rho C b a^4, on its flat sides
     a, b = 0.5, 0.2
@@ -120,7 +140,12 @@ def test_a_body_at_rest_in_a_current_is_pushed_along():
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("coefficient", -1.0), ("linear_froude", float("nan")), ("coefficient", "big")],
+    [
+        ("coefficient", -1.0),
+        ("linear_froude", float("nan")),
+        ("coefficient", "big"),
+        ("friction", -0.01),
+    ],
 )
 def test_impossible_drag_is_refused(field, value):
     with pytest.raises(

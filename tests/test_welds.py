@@ -175,7 +175,11 @@ def test_a_weld_that_is_let_go_leaves_each_part_its_own_drag():
             data = move(of, VELOCITY, SPIN)
             data.eq_active[:] = 0
             rows.append(drag_of(of, data, viscous))
-        assert rows[0] == pytest.approx(rows[1], rel=1e-12)
+            with Buoyancy(of, Water(), damping=Damping(viscous=viscous)).installed():
+                mujoco.mj_step(of, data, 100)
+            rows.append(data.qpos.copy())
+        assert rows[0] == pytest.approx(rows[2], rel=1e-12)
+        assert rows[1] == pytest.approx(rows[3], rel=1e-12)
 
 
 def test_drag_that_the_model_states_stays_that_of_its_body():

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.loads.damping import Damping
-from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.hydrostatics import hydrostatics
 from buoyancy_mj.validation.case import Case, Row
@@ -54,9 +53,14 @@ RELEASES = {21338: -10.428, 21340: -9.864}
 """Angles of release of the runs [deg]."""
 
 
-@functools.cache
-def build_hull(stations: int = 60, levels: int = 16) -> TriMesh:
-    """A hull of vertical sides above the draft, its origin amidships in the waterline."""
+def build_hull(
+    stations: int = 60, levels: int = 16
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A hull of vertical sides above the draft, its origin amidships in the waterline.
+
+    Returns:
+        Its vertices (n, 3) [m] and faces (m, 3).
+    """
     x = np.sin(np.linspace(-0.5 * math.pi, 0.5 * math.pi, stations + 1))
     heights = np.append(np.linspace(0.0, DRAFT, levels + 1), DEPTH)
     exponents = np.interp(heights, (0.0, DRAFT), FULLNESS)
@@ -76,14 +80,14 @@ def build_hull(stations: int = 60, levels: int = 16) -> TriMesh:
     faces = np.concatenate([np.stack([a, c, d], axis=-1), np.stack([a, b, c], axis=-1)])
     faces = faces.reshape(-1, 3)
     kept = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    return TriMesh(vertices, faces[kept])
+    return vertices, faces[kept]
 
 
 def build_model(ratio: tuple[float, float]) -> mujoco.MjModel:
     """Build the ship at its draft, with a damping ratio in roll and its slope [1/deg]."""
     # coefficients scale with the wet part of the hull
-    hull = build_hull()
-    wet = VOLUME / hull.volume
+    waterplane = LENGTH * BREADTH * FULLNESS[1] / (FULLNESS[1] + 1.0)
+    wet = VOLUME / (VOLUME + waterplane * (DEPTH - DRAFT))
     inertia = MASS * RADIUS_OF_GYRATION**2
     omega = 2.0 * math.pi / PERIOD
     critical = 2.0 * INERTIA_RATIO * inertia * omega / wet
@@ -109,7 +113,8 @@ def build_model(ratio: tuple[float, float]) -> mujoco.MjModel:
             </body>
           </worldbody>
         </mujoco>""")
-    spec.add_mesh(name="hull", uservert=hull.vertices.ravel(), userface=hull.faces.ravel())
+    vertices, faces = build_hull()
+    spec.add_mesh(name="hull", uservert=vertices.ravel(), userface=faces.ravel())
     spec.body("b").add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname="hull")
     return spec.compile()
 
@@ -179,16 +184,20 @@ def _compare() -> Sequence[Row]:
         Row("period from 10.4 to 8 deg [s]", 2.535, _find_period(21338, 0.0, 13.0), 0.01),
         Row("period from 5.5 to 4.6 deg [s]", PERIOD, _find_period(21338, 38.0, 51.0), 0.01),
     ]
-    middles, found = find_peaks(*decay(21338))
-    rows += [
-        Row(
-            f"amplitude without speed after {time:g} s [deg]",
-            published,
-            float(np.interp(time, middles, found)),
-            0.05,
-        )
-        for time, published in AT_REST.items()
-    ]
+    for run, amplitudes, speed, tolerance in (
+        (21338, AT_REST, "without speed", 0.05),
+        (21340, UNDER_WAY, f"at {SPEED:g} m/s", 0.2),
+    ):
+        middles, found = find_peaks(*decay(run))
+        rows += [
+            Row(
+                f"amplitude {speed} after {time:g} s [deg]",
+                published,
+                float(np.interp(time, middles, found)),
+                tolerance,
+            )
+            for time, published in amplitudes.items()
+        ]
 
     # a peak comes each half period, and falls by exp(-pi zeta)
     _, found = find_peaks(*decay(21340))
@@ -233,7 +242,9 @@ CASES = (
         "amplitude, run 21338, and the damping by the hull's lift at speed, by Ikeda's method "
         "(ITTC 7.5-02-07-04.5).",
         _compare,
-        draw=_draw,
+        "Ikeda's method has a seventh too little damping at speed and small angles, and over 20 "
+        "periods amplitudes gather that.",
+        _draw,
         loads=(
             "buoyancy",
             "drag: roll damping as the model states it",
