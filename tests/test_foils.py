@@ -273,14 +273,15 @@ def test_a_foil_feels_the_water_of_waves():
 
 @pytest.mark.parametrize("dof", [2, 3])
 def test_a_light_wing_is_slowed_down_and_not_turned_round_by_a_long_step(dof):
-    # the roll of a ball with a wing dies within 0.2 ms, its heave within 4 ms
+    # the roll of a ball with a wing dies within 0.2 ms, its heave within 4 ms; and the water passes
+    # the wing in one step, so that no more than a fifth of a motion is stopped in each
     model = vehicle("aspect=8", timestep=0.02, mass=0.5)
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
     model.opt.gravity[:] = 0.0
     data = moving(model, np.eye(6)[0] * 5.0 + np.eye(6)[dof] * 0.5)
     with Buoyancy(model, damping=None).installed():
         mujoco.mj_step(model, data)
-        assert 0.0 <= data.qvel[dof] < 0.25
+        assert 0.0 <= data.qvel[dof] < 0.45
         for _ in range(100):
             mujoco.mj_step(model, data)
     assert np.linalg.norm(data.qvel) < 5.0
