@@ -9,7 +9,6 @@ import numpy as np
 from buoyancy_mj.inspection.geoms import GeomInspection
 from buoyancy_mj.inspection.inspection import Inspection
 from buoyancy_mj.inspection.vessels import BuoyancyBudget, VesselInspection
-from buoyancy_mj.kernels.polar import STALL
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
 from buoyancy_mj.statics.equilibrium import Equilibrium
 
@@ -74,7 +73,7 @@ def _convert_foil(foil: PlacedFoil) -> dict[str, Any]:
         "area": foil.area,
         "aspect_ratio": _convert(foil.aspect_ratio),
         "lift_slope": foil.lift_slope,
-        "stall": float(foil.section[STALL]),
+        "stall": foil.stall,
     }
 
 

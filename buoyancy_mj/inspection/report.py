@@ -11,7 +11,6 @@ from buoyancy_mj.inspection.geom_sections import describe_geoms, describe_meshes
 from buoyancy_mj.inspection.inspection import Inspection, Overlap
 from buoyancy_mj.inspection.tables import Section, format_degrees, format_number
 from buoyancy_mj.inspection.vessel_sections import describe_vessel
-from buoyancy_mj.kernels.polar import STALL
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
 
 
@@ -81,7 +80,7 @@ def _describe_foils(foils: Sequence[PlacedFoil]) -> Section:
                 format_number(foil.area),
                 format_number(foil.aspect_ratio),
                 format_number(foil.lift_slope),
-                format_degrees(float(foil.section[STALL])),
+                format_degrees(foil.stall),
             )
             for foil in foils
         ),

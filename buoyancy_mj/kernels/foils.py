@@ -248,10 +248,13 @@ def _add_strip(section, flow, along, chord, area, density, timestep, wrench, ste
 
     # how steeply the force grows with the velocity, and with the angle that a step may bring: a
     # strip that turns about a point a quarter of its chord away is a spring of speed over that
-    steep = pressure * (section[SLOPE] + section[PLATE]) * (1.0 + 4.0 * timestep * speed / chord)
-    steepness[0] += steep
-    steepness[1] += steep * along
-    steepness[2] += steep * along * along
+    quarter = 0.25 * chord
+    steep = pressure * (section[SLOPE] + section[PLATE]) * (1.0 + timestep * speed / quarter)
+    # the brake as forces there
+    pair = brake / (quarter * quarter)
+    steepness[0] += steep + pair
+    steepness[1] += (steep + pair) * along
+    steepness[2] += (steep + pair) * along * along
     steepness[3] += steep * x
     steepness[4] += steep * x * x + brake
 

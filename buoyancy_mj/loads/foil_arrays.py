@@ -17,7 +17,7 @@ from buoyancy_mj.hulls.replicas import find_originals
 from buoyancy_mj.hulls.scopes import Scope, explain_missing
 from buoyancy_mj.kernels.arrays import empty
 from buoyancy_mj.kernels.foils import Foils
-from buoyancy_mj.kernels.polar import SLOPE
+from buoyancy_mj.kernels.polar import SLOPE, STALL
 from buoyancy_mj.loads.foils import Foil, parse_foil
 
 STRIPS = 8
@@ -65,6 +65,11 @@ class PlacedFoil:
     def lift_slope(self) -> float:
         """Lift coefficient per angle of attack [1/rad]."""
         return float(self.section[SLOPE])
+
+    @property
+    def stall(self) -> float:
+        """Angle of attack at which it stalls [rad]."""
+        return float(self.section[STALL])
 
     @functools.cached_property
     def section(self) -> NDArray[np.float64]:
