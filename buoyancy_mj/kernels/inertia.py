@@ -16,7 +16,7 @@ from buoyancy_mj.kernels.clip import CX, VOLUME
 from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import difference, rotate, rotate_back, scale, triple
-from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+from buoyancy_mj.kernels.waves import add_motion
 
 
 class AddedMass(NamedTuple):
@@ -155,8 +155,7 @@ def add_reaction(
         x, y, z = triple(centres, b, CX)
         set_current(sea.current, sea.level - z, time, water)
         set_rate(sea.current, time, rush)
-        add_velocity(sea.waves, x, y, z - sea.level, time, water)
-        add_acceleration(sea.waves, x, y, z - sea.level, time, rush)
+        add_motion(sea.waves, x, y, z - sea.level, time, water, rush)
         u0, u1, u2 = rotate_back(r, water[0], water[1], water[2])
         a0, a1, a2 = rotate_back(r, rush[0], rush[1], rush[2])
 

@@ -65,9 +65,9 @@ class Water:
                     "PiersonMoskowitzSea and LevelOscillation"
                 )
         object.__setattr__(self, "waves", waves)
-        if len(self._rows) > MOST_WAVES:
+        if len(self._all_rows) > MOST_WAVES:
             raise WaterError(
-                f"the sea has {len(self._rows)} waves; it may have {MOST_WAVES} at most, "
+                f"the sea has {len(self._all_rows)} waves; it may have {MOST_WAVES} at most, "
                 "so leave out the smallest"
             )
 
@@ -82,7 +82,10 @@ class Water:
 
     @functools.cached_property
     def rows(self) -> NDArray[np.float64]:
-        """The components of all waves as rows (n, 6), see `Wave.rows`; read-only."""
+        """The components of all waves as rows (n, 6), see `Wave.rows`; read-only.
+
+        Components that differ in amplitude and phase alone are one wave.
+        """
         return _read_only(self._rows)
 
     @functools.cached_property
@@ -94,6 +97,10 @@ class Water:
 
     @functools.cached_property
     def _rows(self) -> NDArray[np.float64]:
+        return _join_equal(self._all_rows)
+
+    @functools.cached_property
+    def _all_rows(self) -> NDArray[np.float64]:
         return np.concatenate([np.zeros((0, 6)), *map(_rows_of, self._waves)])
 
     @functools.cached_property
@@ -165,7 +172,8 @@ class Water:
     def velocity(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Velocity (..., 3) [m/s] of the water at points (..., 3) [m] and a time [s], world frame.
 
-        It is the sum of the current and of the orbital velocities of linear waves.
+        It is the sum of the current and of the velocities of the waves, see
+        `kernels.waves.add_motion`.
         """
         p = _read_points(points)
         out = np.empty((p.size // 3, 3))
@@ -177,7 +185,8 @@ class Water:
     def acceleration(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Acceleration (..., 3) [m/s^2] of the water at points (..., 3) [m] and a time [s].
 
-        It is the rate of `velocity` at fixed places, without the convective part.
+        It is that of the water itself as it moves in waves, which the gradient of `pressure` gives,
+        and the rate of a current at fixed places.
         """
         p = _read_points(points)
         out = np.empty((p.size // 3, 3))
@@ -191,8 +200,9 @@ class Water:
     ) -> NDArray[np.float64]:
         """Pressure (...) [Pa] in excess of the air's at points (..., 3) [m] in the water.
 
-        It is that of linear waves, stretched to the surface, where it is zero; see
-        `kernels.waves.head`. Above the surface there is no water, and the numbers mean nothing.
+        It is zero on the surface, and far below it that of linear waves less the mean of their
+        square; see `kernels.waves.head`. Above the surface there is no water, and the numbers mean
+        nothing.
 
         Args:
             points: places (..., 3) [m], world frame.
@@ -215,6 +225,24 @@ def _rows_of(wave: Wave) -> NDArray[np.float64]:
     if not (array[:, 5] > 0.0).all():
         raise WaterError(f"{name} hold a depth of {array[:, 5].min():g}; it must be above 0")
     return array
+
+
+def _join_equal(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rows (n, 6) of which those that differ in amplitude and phase alone are joined."""
+    others = np.delete(rows, [kernels.AMPLITUDE, kernels.PHASE], axis=1)
+    _, first, which = np.unique(others, axis=0, return_index=True, return_inverse=True)
+    if len(first) == len(rows):
+        return rows
+
+    # A e^(i phase) adds up; in the order in which each first came
+    sums = np.zeros(len(first), complex)
+    turned = rows[:, kernels.AMPLITUDE] * np.exp(1j * rows[:, kernels.PHASE])
+    np.add.at(sums, which.ravel(), turned)
+    joined = rows[first]
+    joined[:, kernels.AMPLITUDE], joined[:, kernels.PHASE] = np.abs(sums), np.angle(sums)
+    order = np.argsort(first)
+    in_order: NDArray[np.float64] = np.ascontiguousarray(joined[order])
+    return in_order
 
 
 def _read_points(points: ArrayLike) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.validation import (
     bluerov2_heavy,
     coefficients,
+    depths,
     oes_sphere,
     otter,
     remus_100,
@@ -19,7 +20,16 @@ from buoyancy_mj.validation import (
 )
 from buoyancy_mj.validation.case import Case, Row
 
-_MODULES = (oes_sphere, bluerov2_heavy, remus_100, otter, coefficients, terminal_speeds, waves)
+_MODULES = (
+    oes_sphere,
+    bluerov2_heavy,
+    remus_100,
+    otter,
+    coefficients,
+    terminal_speeds,
+    waves,
+    depths,
+)
 CASES: Mapping[str, Case] = {case.name: case for module in _MODULES for case in module.CASES}
 """The cases by name, in the order of the page."""
 HEADER = ("quantity", "published", "here", "difference", "allowed", "verdict")
