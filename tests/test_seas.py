@@ -19,7 +19,7 @@ from buoyancy_mj import (
     Water,
     WaterError,
 )
-from buoyancy_mj.kernels import local
+from buoyancy_mj.kernels import local, planning
 from buoyancy_mj.kernels import waves as kernels
 from buoyancy_mj.kernels.hulls import LIMIT
 from buoyancy_mj.meshes import shapes
@@ -256,7 +256,7 @@ def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
     ).rows
     sea = np.empty(local.NEAR + 6 * len(rows))
     eta = naive.elevation(rows, 1.3, -2.0, 0.7)
-    local.gather(rows, 1.3, -2.0, z, eta, 0.7, radius, *local.plan(rows, radius), True, sea)
+    local.gather(rows, 1.3, -2.0, z, eta, 0.7, radius, *planning.plan(rows, radius), True, sea)
     # the most of the waves are in them
     assert sea[local.COUNT] < len(rows) / 2
     rng = np.random.default_rng(1)
@@ -269,17 +269,17 @@ def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
     for (x, y, height), head in zip(away + [1.3, -2.0, z], room[local.HEAD], strict=True):
         eta = naive.elevation(rows, x, y, 0.7)
         found, *slope = local.surface(sea, x, y, 0.7)
-        assert found == pytest.approx(eta, abs=local.ACCURACY * radius)
+        assert found == pytest.approx(eta, abs=planning.ACCURACY * radius)
         step = 1e-4 * radius
         along = naive.elevation(rows, x + step, y, 0.7) - naive.elevation(rows, x - step, y, 0.7)
         across = naive.elevation(rows, x, y + step, 0.7) - naive.elevation(rows, x, y - step, 0.7)
         # the last degree counts once more for each
         assert slope == pytest.approx(
-            [along / (2 * step), across / (2 * step)], abs=local.MOST * local.ACCURACY
+            [along / (2 * step), across / (2 * step)], abs=planning.MOST * planning.ACCURACY
         )
         if height < eta:
             assert head == pytest.approx(
-                kernels.head(rows, x, y, height, 0.7, True), abs=local.ACCURACY * radius
+                kernels.head(rows, x, y, height, 0.7, True), abs=planning.ACCURACY * radius
             )
 
 

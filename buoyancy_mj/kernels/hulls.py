@@ -8,7 +8,7 @@ WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5,
 FILL, DEGREE, LIMIT = 11, 12, 13
 """Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its
 faces, middle (3) and half sides (3) of its bounding box, the part of its volume that displaces
-water, and its `local.plan` (2)."""
+water, and its `planning.plan` (2)."""
 AREA_OF_FACE = 3
 """Column of `Hulls.areas` behind the vector area (3)."""
 

@@ -1,12 +1,10 @@
 """The waves around a hull as polynomials, by which many of them cost little more than a few.
 
 About the middle of a hull the elevation of a wave, A cos(k.x + phase), is a series in k.x, and the
-series of all waves are one polynomial. A series of degree n leaves less than A (k r)^(n + 1) / (n +
-1)! out of a wave within a radius r: the degree is as high as the shortest waves need, and waves
-that are too short for `MOST` stay as they are. Pressure follows from sums of waves at the height
-where the water stood in still water, see `waves.head`. Each is a polynomial in x, y and that
-height: with its Laplacian zero, all of it follows from two layers, its value on a level and its
-slope there.
+series of all waves are one polynomial, of the degree that `planning` says; waves that are too short
+for it stay as they are. Pressure follows from sums of waves at the height where the water stood in
+still water, see `waves.head`. Each is a polynomial in x, y and that height: with its Laplacian
+zero, all of it follows from two layers, its value on a level and its slope there.
 
 All that is gathered for a hull stands in one row of numbers, which costs less to hand on than
 several.
@@ -14,11 +12,10 @@ several.
 
 import math
 
-import numpy as np
 from numba import njit
 
+from buoyancy_mj.kernels.planning import MOST, remainder
 from buoyancy_mj.kernels.polynomials import (
-    LARGEST,
     add_at_many,
     add_powers,
     add_series,
@@ -29,39 +26,19 @@ from buoyancy_mj.kernels.polynomials import (
     size_in_space,
     with_gradient,
 )
+from buoyancy_mj.kernels.still_water import decay, fade, seabed, settle, still_height
 from buoyancy_mj.kernels.vectors import triple
-from buoyancy_mj.kernels.waves import (
-    AMPLITUDE,
-    DEPTH,
-    KX,
-    KY,
-    OMEGA,
-    PHASE,
-    decay,
-    fade,
-    phase_at,
-    seabed,
-    settle,
-    still_height,
-)
+from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, OMEGA, PHASE, phase_at
 
-LEAST, MOST = 2, LARGEST
-"""Degrees of the polynomials."""
-FEW = 4
-"""Waves up to which they are summed one by one."""
-ACCURACY = 1e-5
-"""The part of the radius that the polynomials may leave out of the elevation in all."""
 FLAT = size.py_func(MOST)
 """Coefficients of a polynomial in x, y, at most."""
 SOLID = size_in_space.py_func(MOST)
 """Coefficients of one in x, y, z, at most."""
-_FACTORIAL = float(math.factorial(MOST + 1))
-
 COUNT, MANY, DEGREE, X, Y, MIDDLE, BOTTOM, FALL, TIDE, WHOLE, SHALLOW, SURFACE = range(12)
 """Columns of a row: how many waves are near, and are in all; the degree; the middle, and its height
-in still water; the depth of the water; `waves.decay` of the waves; what all the water rises, and
-what the waves take off the mean head at the still level; whether a wave in the polynomials feels
-the bottom; from SURFACE on the polynomial of the elevation."""
+in still water; the depth of the water; `still_water.decay` of the waves; what all the water rises,
+and what the waves take off the mean head at the still level; whether a wave in the polynomials
+feels the bottom; from SURFACE on the polynomial of the elevation."""
 RISE = SURFACE + FLAT
 """First column of the polynomial of the water's rise, sum eta S in `waves.head`."""
 REST = RISE + SOLID
@@ -75,71 +52,9 @@ HEAD, ETA, STILL, UP, STRAIN, OVER, BEND, LESS, ROOM = 3, 4, 5, 6, 7, 8, 9, 10, 
 """Rows of a room for many places, after x and y from the middle and z from the still level: the
 head or the elevation there; the elevation; a guess of the height in still water; the water's rise
 and its slope, the rest of the head and its slope, and what the waves take off the mean head, all
-as in `waves.settle`; three rows of scratch; and how many rows there are."""
+as in `still_water.settle`; three rows of scratch; and how many rows there are."""
 _SCRATCH = 11
 """First row of scratch."""
-
-
-@njit(cache=True, error_model="numpy")
-def plan(waves, radius):
-    """The degree of the polynomials around a hull of a radius, and the limit of what they hold.
-
-    They hold a wave whose `remainder` is below the limit.
-
-    All that they leave out is within `ACCURACY` of the radius. The plan is the same at all times.
-    """
-    many, allowed = waves.shape[0], ACCURACY * radius
-    if many <= FEW:
-        return LEAST, -1.0
-
-    # the waves that are held
-    limit = allowed
-    while _sum_remainders(waves, radius, limit) > allowed:
-        limit *= 0.5
-
-    # the degree that these need
-    left = np.zeros(MOST + 1)
-    for w in range(many):
-        if remainder(waves, w, radius) <= limit:
-            angle = _angle(waves, w, radius)
-            power = abs(waves[w, AMPLITUDE]) * angle
-            for degree in range(1, MOST + 1):
-                power *= angle * (1.0 / (degree + 1))
-                left[degree] += power
-    degree = LEAST
-    while degree < MOST and left[degree] > allowed:
-        degree += 1
-    return degree, limit
-
-
-@njit(cache=True, error_model="numpy")
-def _sum_remainders(waves, radius, limit):
-    """The sum of all remainders up to a limit."""
-    total = 0.0
-    for w in range(waves.shape[0]):
-        left = remainder(waves, w, radius)
-        if left <= limit:
-            total += left
-    return total
-
-
-@njit(cache=True, error_model="numpy")
-def remainder(waves, w, radius):
-    """What a polynomial of degree `MOST` leaves out of a wave around a hull of a radius."""
-    left = abs(waves[w, AMPLITUDE]) * _angle(waves, w, radius) ** (MOST + 1) / _FACTORIAL
-    # in shallow water the orbits are wider than high
-    kh = waves[w, DEPTH] * math.sqrt(waves[w, KX] ** 2 + waves[w, KY] ** 2)
-    return left / kh if 0.0 < kh < 1.0 else left
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _angle(waves, w, radius):
-    """How much the phase changes over a path in a hull.
-
-    A fifth is added for the part of the path that is downward.
-    """
-    kx, ky = waves[w, KX], waves[w, KY]
-    return 1.2 * math.sqrt(kx * kx + ky * ky) * radius
 
 
 @njit(cache=True, error_model="numpy")
@@ -203,7 +118,10 @@ def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, near):
 
 @njit(cache=True, error_model="numpy")
 def _set_whole(waves, near):
-    """Write column WHOLE of a row; returns `waves.decay` of all waves, and the water's depth."""
+    """Write column WHOLE of a row.
+
+    Returns `still_water.decay` of all waves, and the depth of the water.
+    """
     energy = weighted = whole = 0.0
     depth = math.inf
     for w in range(waves.shape[0]):
