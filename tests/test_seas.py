@@ -248,11 +248,21 @@ def test_many_points_at_once_are_summed_as_one_by_one():
 # many waves on hulls
 
 
-@pytest.mark.parametrize("depth", [math.inf, 3.0])
-@pytest.mark.parametrize(("radius", "z"), [(0.3, 0.0), (0.3, -0.6), (2.5, -1.0)])
-def test_the_polynomials_around_a_hull_keep_their_bound(depth, radius, z):
+@pytest.mark.parametrize(
+    ("radius", "z", "depth"),
+    [
+        *[(*place, h) for place in ((0.3, 0.0), (0.3, -0.6), (2.5, -1.0)) for h in (math.inf, 3.0)],
+        (0.3, 0.0, 1.2),
+        (0.3, -0.6, 1.2),
+    ],
+)
+def test_the_polynomials_around_a_hull_keep_their_bound(radius, z, depth):
     rows = Water(
-        waves=[JonswapSea(0.6, 4.0, spreading=8.0, depth=depth), RegularWave(0.1, period=9.0)]
+        waves=[
+            JonswapSea(0.6, 4.0, spreading=8.0, depth=depth),
+            RegularWave(0.1, period=9.0),
+            LevelOscillation(0.05, 0.2),
+        ]
     ).rows
     sea = np.empty(local.NEAR + 6 * len(rows))
     eta = naive.elevation(rows, 1.3, -2.0, 0.7)

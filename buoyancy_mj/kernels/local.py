@@ -37,8 +37,8 @@ SOLID = size_in_space.py_func(MOST)
 COUNT, MANY, DEGREE, X, Y, MIDDLE, BOTTOM, FALL, TIDE, WHOLE, SHALLOW, SURFACE = range(12)
 """Columns of a row: how many waves are near, and are in all; the degree; the middle, and its height
 in still water; the depth of the water; `still_water.decay` of the waves; what all the water rises,
-and what the waves take off the mean head at the still level; whether a wave in the polynomials
-feels the bottom; from SURFACE on the polynomial of the elevation."""
+and what the waves take off the mean head at the still level; the degree of the polynomial of REST,
+0 if no wave in it feels the bottom; from SURFACE on the polynomial of the elevation."""
 RISE = SURFACE + FLAT
 """First column of the polynomial of the water's rise, sum eta S in `waves.head`."""
 REST = RISE + SOLID
@@ -58,10 +58,10 @@ _SCRATCH = 11
 
 
 @njit(cache=True, error_model="numpy")
-def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, near):
+def gather(waves, x, y, z, eta, time, radius, degree, limit, bottom_degree, dynamic, near):
     """Bring the waves around a place, given from the still level, into a row `near`.
 
-    The degree and the limit are the `plan` of a hull there.
+    The degrees and the limit are the `planning.plan` of a hull there.
 
     Waves that the polynomials do not hold are copied as they are; all others go into that of the
     surface, and with `dynamic` into that of the pressure. The row has NEAR + 6 numbers for each
@@ -103,14 +103,14 @@ def gather(waves, x, y, z, eta, time, radius, degree, limit, dynamic, near):
         add_powers(near, MEAN, half, square * wide * narrow, 2.0 * k)
         near[MEAN] += square * narrow * narrow - half
         if bottom > 0.0:
-            near[SHALLOW] = 1.0
+            near[SHALLOW], n = bottom_degree, bottom_degree
             a, b = wide * tanh - narrow, k * (narrow * tanh - wide)
-            add_series(near, REST, degree, a * crest, a * slope, kx, ky)
-            add_series(near, REST + layer, degree - 1, b * crest, b * slope, kx, ky)
+            add_series(near, REST, n, a * crest, a * slope, kx, ky)
+            add_series(near, REST + size(n), n - 1, b * crest, b * slope, kx, ky)
     if dynamic:
         deepen(near, RISE, degree)
     if near[SHALLOW] > 0.0:
-        deepen(near, REST, degree)
+        deepen(near, REST, bottom_degree)
 
     near[COUNT], near[MANY], near[DEGREE] = count, many, degree
     near[X], near[Y], near[MIDDLE], near[BOTTOM], near[FALL] = x, y, still, depth, fall
@@ -219,6 +219,7 @@ def _add_held(near, room, count):
         near, RISE, degree, x, y, away, count, row, level, room[UP], room[STRAIN]
     )  # fmt: skip
     if near[SHALLOW] > 0.0:
+        degree = int(near[SHALLOW])
         set_in_space_at_many(
             near, REST, degree, x, y, away, count, row, level, room[OVER], room[BEND]
         )  # fmt: skip

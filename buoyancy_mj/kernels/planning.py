@@ -26,32 +26,43 @@ _FACTORIAL = float(math.factorial(MOST + 1))
 def plan(waves, radius):
     """The degree of the polynomials around a hull of a radius, and the limit of what they hold.
 
-    They hold a wave whose `remainder` is below the limit.
+    They hold a wave whose `remainder` is below the limit. A third number is the degree of what the
+    bottom adds, which fades towards the surface and needs less.
 
     All that they leave out is within `ACCURACY` of the radius. The plan is the same at all times.
     """
     many, allowed = waves.shape[0], ACCURACY * radius
     if many <= FEW:
-        return LEAST, -1.0
+        return LEAST, -1.0, LEAST
 
     # the waves that are held
     limit = allowed
     while _sum_remainders(waves, radius, limit) > allowed:
         limit *= 0.5
 
-    # the degree that these need
-    left = np.zeros(MOST + 1)
+    # what each degree leaves of these, and of what the bottom adds: at most 1 / sinh k h
+    left, rest = np.zeros(MOST + 1), np.zeros(MOST + 1)
     for w in range(many):
         if remainder(waves, w, radius) <= limit:
             angle = _angle(waves, w, radius)
             power = abs(waves[w, AMPLITUDE]) * angle * _width(waves, w)
+            k = math.hypot(waves[w, KX], waves[w, KY])
+            kh = min(max(k * waves[w, DEPTH], 1.0), 99.0) if k > 0.0 else 99.0
+            added = 1.0 / math.sinh(kh)
             for degree in range(1, MOST + 1):
                 power *= angle * (1.0 / (degree + 1))
                 left[degree] += power
+                rest[degree] += power * added
+    return _lowest(left, allowed), limit, _lowest(rest, 0.1 * allowed)
+
+
+@njit(cache=True, error_model="numpy")
+def _lowest(left, allowed):
+    """The lowest degree that leaves no more than is allowed."""
     degree = LEAST
     while degree < MOST and left[degree] > allowed:
         degree += 1
-    return degree, limit
+    return degree
 
 
 @njit(cache=True, error_model="numpy")

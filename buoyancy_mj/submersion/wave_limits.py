@@ -43,7 +43,7 @@ def check_waves(radius: float, waves: NDArray[np.float64]) -> None:
     panels = math.ceil(steepest * radius / swell.PANEL)
     if panels * len(waves) <= MOST_PANELS:
         return
-    _, limit = planning.plan(waves, radius)
+    _, limit, _ = planning.plan(waves, radius)
     short = sum(planning.remainder(waves, w, radius) > limit for w in range(len(waves)))
     if short * panels > MOST_PANELS:
         raise WaterError(
