@@ -27,6 +27,42 @@ def elevation(rows, x, y, time):
     return sum(a * np.cos(kx * x + ky * y - w * time + phase) for a, kx, ky, w, phase, *_ in rows)
 
 
+def head(rows, x, y, z, time):
+    """Pressure over rho g in waves, with the height in still water by bisection."""
+    amplitude, kx, ky, omega, phase, depth = rows.T
+    k = np.hypot(kx, ky)
+    eta = amplitude * np.cos(kx * x + ky * y - omega * time + phase)
+
+    def narrow(height):
+        """Sinh k (z + h) over sinh k h: the rise of the water."""
+        ways = [_fade(np.sinh, np.sinh, *wave, height) for wave in zip(k, depth, strict=True)]
+        return np.array(ways)
+
+    def wide(height):
+        """Cosh k (z + h) over cosh k h: the pressure."""
+        ways = [_fade(np.cosh, np.cosh, *wave, height) for wave in zip(k, depth, strict=True)]
+        return np.array(ways)
+
+    def mean(height):
+        """The mean of the vertical velocity's square, over g."""
+        return (0.5 * amplitude**2 * k * np.tanh(k * depth) * narrow(height) ** 2).sum()
+
+    deepest = -min(depth.min(), 50.0 + abs(z))
+    still = brentq(lambda s: s + eta @ narrow(s) - z, deepest, 1e-9, xtol=1e-14)
+    slope = eta @ (k * np.tanh(k * depth) * narrow(still))
+    waves = k > 0.0
+    square = (eta * waves) @ narrow(still) * slope - mean(still)
+    far = 1.0 - mean(still) / mean(0.0) if waves.any() else 0.0
+    return -still + eta @ (wide(still) - narrow(still)) + far * square
+
+
+def _fade(above, below, k, depth, height):
+    """A function of k (z + h) over one of k h: e^(k z) in deep water, 1 for an endless wave."""
+    if k == 0.0 or np.isinf(depth):
+        return np.exp(k * height)
+    return above(k * (height + depth)) / below(k * depth)
+
+
 def columns(half_sizes, position, water, time, cells=400):
     """Submerged volume and centroid of an upright box, one column of water at a time."""
     x = position[0] + half_sizes[0] * (2.0 * (np.arange(cells) + 0.5) / cells - 1.0)

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from buoyancy_mj import Buoyancy, ModelError, RegularWave, Settings, Water, add_water, water_in
 from buoyancy_mj.hulls.geoms import find_hulls
-from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+from buoyancy_mj.kernels.waves import add_motion, add_velocity
 from buoyancy_mj.loads.added_mass import ellipsoid_added_mass, estimate_added_mass
 from tests import vessels
 
@@ -323,20 +323,33 @@ def test_a_small_neutral_sphere_follows_the_orbit_of_the_water():
     assert x == pytest.approx(orbit * np.sin(omega * t), abs=0.02 * orbit)
 
 
-def test_acceleration_is_the_rate_of_the_velocity():
-    waves = Water(
-        waves=[
-            RegularWave(0.1, wavelength=5.0, direction=0.7),
-            RegularWave(0.2, period=3.0, depth=4.0),
-        ]
-    ).rows
-    for point in ((0.3, 0.2, -0.5), (2.0, -1.0, -3.0)):
-        ends = np.zeros((2, 3))
-        add_velocity(waves, *point, 1.0 + 1e-5, ends[0])
-        add_velocity(waves, *point, 1.0 - 1e-5, ends[1])
-        rate = np.zeros(3)
-        add_acceleration(waves, *point, 1.0, rate)
-        assert rate == pytest.approx((ends[0] - ends[1]) / 2e-5, abs=1e-8)
+def test_acceleration_is_the_rate_of_the_velocity_of_the_water_as_it_moves():
+    # to first order at the surface, and in one deep wave far below it to second order
+    left = {}
+    for scale in (0.01, 0.02):
+        waves = Water(
+            waves=[
+                RegularWave(scale, wavelength=5.0, direction=0.7),
+                RegularWave(2.0 * scale, period=3.0, depth=4.0),
+            ]
+        ).rows
+        deep = RegularWave(10.0 * scale, wavelength=2.0 * math.pi).rows
+        for rows, point in (
+            (waves, (0.3, 0.2, -0.1)),
+            (waves, (0.3, 0.2, -0.5)),
+            (waves, (2.0, -1.0, -3.0)),
+            (deep, (0.3, 0.0, -3.0)),
+        ):
+            at, rate, ends = np.zeros(3), np.zeros(3), np.zeros((2, 3))
+            add_motion(rows, *point, 1.0, at, rate)
+            for end, step in zip(ends, (1e-5, -1e-5), strict=True):
+                add_velocity(rows, *(point + step * at), 1.0 + step, end)
+            error = rate - (ends[0] - ends[1]) / 2e-5
+            left.setdefault(point, []).append(np.abs(error).max())
+    for point, (one, two) in left.items():
+        assert two < 0.02, point
+        assert two / one > (3.0 if point[2] > -3.0 else 3.5), point
+    assert left[0.3, 0.0, -3.0][1] < 0.05 * 9.81 * 0.2**2 * math.exp(-6.0)
 
 
 @pytest.mark.parametrize("integrator", ["Euler", "RK4", "implicit", "implicitfast"])

@@ -6,10 +6,14 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.special import j1
 
 from buoyancy_mj import (
     Buoyancy,
+    Damping,
+    JonswapSea,
     LevelOscillation,
     MethodError,
     RegularWave,
@@ -23,7 +27,7 @@ from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes.scene import scene_from_table
 from buoyancy_mj.submersion.exact import PackedHulls
 from buoyancy_mj.submersion.hull_set import HullSet
-from tests import vessels
+from tests import naive, vessels
 
 BALL = trimesh.creation.icosphere(subdivisions=4)
 # scaled to the volume of a ball of radius 1
@@ -72,6 +76,89 @@ def test_at_small_steepness_it_is_that_of_linear_theory():
         )
 
 
+@given(
+    st.floats(0.01, 0.44),
+    st.floats(0.3, 60.0),
+    st.floats(0.0, 2.0 * math.pi),
+    st.floats(0.0, 1.0),
+    st.integers(0, 10**6),
+)
+@settings(max_examples=40, deadline=None)
+def test_it_is_that_of_the_height_in_still_water_found_by_bisection(steep, kh, phase, part, seed):
+    # one wave up to the steepness at which it breaks, tanh(k h) of 0.44, and a sea: a step of
+    # Newton's leaves a twentieth of the fourth power of the steepness, over k, and where its guess
+    # of e^(k z) is off by a few hundredths, as little of the third
+    amplitude = steep * math.tanh(kh)
+    wave = RegularWave(amplitude, wavelength=2.0 * math.pi, depth=kh if kh < 20.0 else math.inf)
+    eta = amplitude * math.cos(phase)
+    z = eta - part * min(4.0, kh + eta)
+    rows = Water(waves=wave).rows
+    bound = 0.06 * amplitude**4 + 0.008 * amplitude**3 + 1e-12
+    assert head(rows, phase, 0.0, z, 0.0, True) == pytest.approx(
+        naive.head(rows, phase, 0.0, z, 0.0), abs=bound
+    )
+    sea = JonswapSea(0.3, 4.0, components=16, spreading=8.0, depth=1.0 + kh, seed=seed)
+    rows = Water(waves=sea).rows
+    eta = naive.elevation(rows, 1.0, 2.0, 3.0)
+    z = eta - part * min(2.0, 1.0 + kh + eta)
+    assert head(rows, 1.0, 2.0, z, 3.0, True) == pytest.approx(
+        naive.head(rows, 1.0, 2.0, z, 3.0), abs=2e-3
+    )
+
+
+@given(st.integers(0, 10**6), st.floats(0.5, 50.0), st.floats(0.0, 100.0))
+@settings(max_examples=60, deadline=None)
+def test_it_is_zero_on_the_surface_of_any_sea(seed, depth, time):
+    waves = [JonswapSea(0.25, 3.0, spreading=8.0, depth=depth, seed=seed), LevelOscillation(0.1, 1)]
+    rows = Water(waves=waves).rows
+    eta = naive.elevation(rows, 0.3, -2.0, time)
+    assert head(rows, 0.3, -2.0, eta, time, True) == pytest.approx(0.0, abs=1e-12)
+
+
+@pytest.mark.parametrize("depth", [math.inf, 3.0, 1.0])
+@pytest.mark.parametrize("steepness", [0.1, 0.3, 0.44])
+def test_it_grows_with_depth_in_waves_up_to_those_that_break(steepness, depth):
+    rows = RegularWave(steepness * math.tanh(depth), wavelength=2.0 * math.pi, depth=depth).rows
+    for x in np.linspace(0.0, math.pi, 9):
+        eta = naive.elevation(rows, x, 0.0, 0.0)
+        z = np.linspace(eta, -min(depth, 4.0), 200)
+        values = [head(rows, x, 0.0, height, 0.0, True) for height in z]
+        assert (np.diff(values) / -np.diff(z)).min() > 0.7
+
+
+@pytest.mark.parametrize("steepness", [1.0, 3.0])
+def test_it_is_finite_and_without_a_jump_in_waves_steeper_than_any_that_breaks(steepness):
+    rows = np.array([[steepness, 1.0, 0.0, math.sqrt(9.81), 0.0, math.inf]])
+    for x in np.linspace(0.0, math.pi, 9):
+        z = np.linspace(5.0, -10.0, 15001)
+        values = np.array([head(rows, x, 0.0, height, 0.0, True) for height in z])
+        assert np.isfinite(values).all()
+        assert np.abs(np.diff(values)).max() < 0.06
+
+
+@pytest.mark.parametrize("depth", [math.inf, 2.0, 0.8])
+def test_its_mean_is_less_than_still_waters_by_the_square_of_the_vertical_velocity(depth):
+    # Longuet-Higgins and Stewart 1964: -rho <w^2>, which is Bernoulli's in deep water
+    amplitude, k = 0.05, 1.0
+    wave = RegularWave(amplitude, wavelength=2.0 * math.pi, depth=depth)
+    water = Water(waves=wave)
+    times = np.linspace(0.0, wave.period, 64, endpoint=False)
+    omega, h = float(wave.rows[0, 3]), min(depth, 20.0)
+    for z in (-0.1, -0.3, -0.6):
+        mean = np.mean([head(water.rows, 0.0, 0.0, z, t, True) for t in times]) + z
+        square = 0.5 * (amplitude * omega * math.sinh(k * (z + h)) / math.sinh(k * h)) ** 2
+        assert mean == pytest.approx(-square / 9.81, rel=0.03)
+
+
+def test_under_a_standing_wave_it_is_bernoullis_mean_at_node_and_crest_alike():
+    # two waves that meet: <u^2> is k g (A e^kz)^2 at any place
+    waves = [RegularWave(0.05, wavelength=2.0 * math.pi, direction=b) for b in (0.0, math.pi)]
+    water, times = Water(waves=waves), np.linspace(0.0, waves[0].period, 64, endpoint=False)
+    for x in (0.0, 0.25 * math.pi, 0.5 * math.pi):
+        mean = np.mean([head(water.rows, x, 0.0, -2.0, t, True) for t in times]) - 2.0
+        assert mean == pytest.approx(-(0.05**2) * math.exp(-4.0), rel=0.05)
+
+
 @pytest.mark.parametrize("kind", [False, True])
 def test_a_level_that_goes_up_and_down_adds_its_height(kind):
     water = Water(waves=LevelOscillation(0.3, 0.5))
@@ -105,6 +192,26 @@ def test_under_water_the_force_is_minus_volume_times_the_gradient_at_the_centre(
         assert force == pytest.approx(
             size * np.array([math.sin(phase), 0.0, -math.cos(phase)]), abs=0.01 * size
         )
+
+
+@pytest.mark.parametrize(
+    ("steepness", "kd"), [(0.1, 1.5), (0.2, 1.5), (0.2, 2.0), (0.14, 1.4), (0.16, 2.8)]
+)
+def test_on_a_sphere_two_radii_deep_the_force_keeps_its_size_and_the_lift_is_bernoullis(
+    steepness, kd
+):
+    # of radius 1: the size is V k A e^-kd, the lift that of -1/2 u^2 / g integrated over the ball
+    k = kd / 2.0
+    amplitude, q = steepness / k, 2.0 * k
+    wave = RegularWave(amplitude, wavelength=2.0 * math.pi / k)
+    times = np.linspace(0.0, wave.period, 16, endpoint=False)
+    forces = np.array([press(BALL, Water(waves=wave), (0.0, 0.0, -2.0), time=t)[:3] for t in times])
+    mean = forces.mean(axis=0)
+    sizes = np.linalg.norm(forces - mean, axis=1) / BALL.volume
+    assert sizes == pytest.approx([steepness * math.exp(-kd)] * 16, rel=0.02)
+    ball = 3.0 * (q * math.cosh(q) - math.sinh(q)) / q**3
+    lift = (steepness * math.exp(-kd)) ** 2 * ball
+    assert mean[2] / BALL.volume - 1.0 == pytest.approx(lift, rel=0.03)
 
 
 @pytest.mark.parametrize(
@@ -262,6 +369,52 @@ def test_in_short_waves_the_surface_alone_lifts_a_deep_body_too_far(pressure):
     assert response == pytest.approx(
         2.0 if pressure == "archimedes" else 2.0 * math.exp(-0.5), rel=5e-3
     )
+
+
+def drift(amplitude, period, depth, start="moving", **options):
+    """Drift along the waves [m/s], and rise in a minute [m], of a neutral sphere of 5 cm radius."""
+    radius = 0.05
+    model = mujoco.MjModel.from_xml_string(
+        f"""<mujoco><option timestep="0.01"/><worldbody>
+        <body pos="0 0 {-depth}"><freejoint/>
+        <inertial pos="0 0 0" mass="{4000 / 3 * math.pi * radius**3}" diaginertia="1e-3 1.1e-3 1e-3"
+        /><geom type="sphere" size="{radius}"/></body></worldbody></mujoco>"""
+    )
+    # the surface passes its level, and the sphere is in the middle of its orbit; or under a crest
+    wave = RegularWave(amplitude, period=period, phase=-math.pi / 2 if start == "moving" else 0.0)
+    water, data = Water(waves=wave), mujoco.MjData(model)
+    if start == "moving":
+        data.qvel[:3] = water.velocity([0.0, 0.0, -depth], 0.0)
+    places = []
+    with Buoyancy(model, water, pressure="froude-krylov", **options).installed():
+        while data.time < 60.0:
+            places.append(data.qpos[[0, 2]].copy())
+            mujoco.mj_step(model, data)
+    # between the means over the first and over the last whole period
+    steps, whole = round(period / 0.01), math.floor(60.0 / period)
+    first = np.mean(places[:steps], axis=0)
+    last = np.mean(places[(whole - 1) * steps : whole * steps], axis=0)
+    return (last - first)[0] / ((whole - 1) * period), (last - first)[1]
+
+
+@pytest.mark.parametrize("added_mass", ["none", "estimate"])
+def test_a_small_neutral_sphere_stays_at_its_depth(added_mass):
+    # where the water moves by 3 mm; by its size it rises 1 cm without drag: the lift of its ball is
+    # larger by (2 k R)^2 / 10 than that at its centre
+    _, rise = drift(0.05, 1.2, 1.0, added_mass=added_mass, damping=None)
+    assert rise == pytest.approx(0.0, abs=0.016)
+    for start in ("moving", "at rest"):
+        _, rise = drift(0.05, 1.2, 1.0, start, added_mass=added_mass, damping=Damping())
+        assert rise == pytest.approx(0.0, abs=0.004)
+
+
+@pytest.mark.parametrize("depth", [2.0, 5.0])
+@pytest.mark.parametrize("added_mass", ["none", "estimate"])
+def test_a_neutral_sphere_drifts_along_the_waves_with_stokes(depth, added_mass):
+    # Stokes 1847: A^2 omega k e^(2 k z), .04939 m/s at the surface
+    along, _ = drift(1.0, 8.0, depth, added_mass=added_mass, damping=None)
+    # a step of Euler's begins with half a step of acceleration too much, a fifteenth of that
+    assert along == pytest.approx(0.04939 * math.exp(-2.0 * 0.06288 * depth), rel=0.1)
 
 
 # as loads of a model

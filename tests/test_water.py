@@ -98,7 +98,7 @@ def test_the_level_of_the_source_paper_stays_within_its_bounds():
 
 @pytest.mark.parametrize("depth", [math.inf, 20.0, 1.5])
 def test_the_surface_moves_with_its_water(depth):
-    # linear kinematic condition: d eta / dt = w at the still level
+    # linear kinematic condition: d eta / dt = w at the surface
     water = Water(
         level=0.4,
         waves=[
@@ -108,21 +108,76 @@ def test_the_surface_moves_with_its_water(depth):
     )
     h = 1e-5
     rate = (water.elevation(1.0, 2.0, 0.7 + h) - water.elevation(1.0, 2.0, 0.7 - h)) / (2.0 * h)
-    assert water.velocity([1.0, 2.0, 0.4], 0.7)[2] == pytest.approx(float(rate), rel=1e-8)
+    top = float(water.elevation(1.0, 2.0, 0.7))
+    assert water.velocity([1.0, 2.0, top], 0.7)[2] == pytest.approx(float(rate), rel=1e-8)
 
 
 @pytest.mark.parametrize("depth", [math.inf, 5.0])
 def test_the_orbital_velocity_is_free_of_divergence_and_of_rotation(depth):
-    water = Water(waves=RegularWave(0.3, period=3.0, depth=depth, direction=0.8))
-    p, h = np.array([1.0, 2.0, -1.5]), 1e-4
-    gradient = np.array(
-        [
-            (water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h)
-            for e in np.eye(3)
-        ]
+    # to first order: what is left is as the square of the amplitude, at the surface too
+    left = []
+    for amplitude in (0.001, 0.002):
+        water = Water(waves=RegularWave(amplitude, period=3.0, depth=depth, direction=0.8))
+        for z in (-0.002, -0.5, -1.5):
+            p, h = np.array([1.0, 2.0, z]), 1e-4
+            gradient = np.array(
+                [
+                    (water.velocity(p + h * e, 0.2) - water.velocity(p - h * e, 0.2)) / (2 * h)
+                    for e in np.eye(3)
+                ]
+            )
+            left += [np.trace(gradient), *(gradient - gradient.T)[np.triu_indices(3, 1)]]
+    # omega k A is 9e-4
+    assert np.abs(left[: len(left) // 2]).max() < 2e-6
+    assert np.abs(left[len(left) // 2 :]).max() < 8e-6
+
+
+@pytest.mark.parametrize("depth", [math.inf, 5.0])
+def test_the_velocity_has_no_jump_and_stays_bounded_under_a_crest(depth):
+    # ripples on a swell: e^(k z) of the ripple would be 1e5 at the swell's crest
+    swell = RegularWave(1.0, wavelength=60.0, depth=depth)
+    ripple = RegularWave(0.01, wavelength=0.5, depth=depth)
+    water = Water(waves=[swell, ripple])
+    z = np.linspace(-2.0, 1.5, 3501)
+    points = np.column_stack([0.0 * z, 0.0 * z, z])
+    speeds = np.linalg.norm(water.velocity(points, 0.0), axis=1)
+    most = sum(
+        wave.rows[0, 0] * wave.rows[0, 3] / math.tanh(np.hypot(*wave.rows[0, 1:3]) * depth)
+        for wave in (swell, ripple)
     )
-    assert np.trace(gradient) == pytest.approx(0.0, abs=1e-8)
-    assert gradient == pytest.approx(gradient.T, abs=1e-8)
+    assert speeds.max() < 1.1 * most
+    assert np.abs(np.diff(speeds)).max() < 2e-3
+
+
+@pytest.mark.parametrize("depth", [math.inf, 3.0])
+def test_the_mean_velocity_at_a_place_is_zero(depth):
+    # so that what floats with the water drifts with Stokes: what moves with the surface would have
+    # half of that drift against the waves
+    wave = RegularWave(0.1, wavelength=4.0, depth=depth)
+    water, k = Water(waves=wave), 2.0 * math.pi / 4.0
+    omega = float(wave.rows[0, 3])
+    times = np.linspace(0.0, wave.period, 64, endpoint=False)
+    for z in (-0.12, -0.4, -1.0):
+        mean = np.mean([water.velocity([0.0, 0.0, z], t) for t in times], axis=0)
+        drift = 0.1**2 * omega * k * math.cosh(2.0 * k * (min(depth, 9.0) + z))
+        drift /= 2.0 * math.sinh(k * min(depth, 9.0)) ** 2
+        assert np.abs(mean).max() < 0.06 * drift
+
+
+def test_waves_that_differ_in_amplitude_and_phase_alone_are_one():
+    waves = [
+        RegularWave(0.1, period=3.0, phase=0.4),
+        RegularWave(0.2, period=4.0),
+        RegularWave(0.3, period=3.0, phase=-1.0),
+        LevelOscillation(0.1, 0.3),
+        LevelOscillation(0.1, 0.3, phase=math.pi),
+    ]
+    rows = Water(waves=waves).rows
+    assert rows[:, 3] == pytest.approx([waves[i].rows[0, 3] for i in (0, 1, 3)], rel=1e-15)
+    assert rows[2, 0] == pytest.approx(0.0, abs=1e-16)
+    for x, t in ((0.3, 0.2), (-2.0, 1.7)):
+        parts = sum(float(Water(waves=wave).elevation(x, 0.0, t)) for wave in waves)
+        assert naive.elevation(rows, x, 0.0, t) == pytest.approx(parts, abs=1e-15)
 
 
 def test_no_water_flows_through_the_bottom():
@@ -131,11 +186,14 @@ def test_no_water_flows_through_the_bottom():
 
 
 def test_deep_water_moves_on_circles_that_shrink_by_exp_kz():
-    wave = RegularWave(0.3, period=3.0)
-    water, k = Water(waves=wave), 2.0 * math.pi / wave.wavelength
-    for z in (-0.5, -2.0):
-        speeds = [np.linalg.norm(water.velocity([0.0, 0.0, z], t)) for t in np.linspace(0, 3, 9)]
-        assert speeds == pytest.approx([0.3 * 2.0 * math.pi / 3.0 * math.exp(k * z)] * 9, rel=1e-12)
+    # at any depth in low waves, and from k d = 1.5 on in steep ones
+    for steepness, depths, most in ((1e-4, (0.1, 0.5, 2.0), 2e-4), (0.2, (1.5, 2.0, 3.0), 0.02)):
+        wave = RegularWave(steepness, wavelength=2.0 * math.pi)
+        water, omega = Water(waves=wave), float(wave.rows[0, 3])
+        for d in depths:
+            times = np.linspace(0.0, wave.period, 9)
+            speeds = [np.linalg.norm(water.velocity([0.0, 0.0, -d], t)) for t in times]
+            assert speeds == pytest.approx([steepness * omega * math.exp(-d)] * 9, rel=most)
 
 
 def test_the_current_adds_to_the_waves():

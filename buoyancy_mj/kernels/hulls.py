@@ -5,10 +5,10 @@ from typing import Annotated, NamedTuple
 from buoyancy_mj.kernels.arrays import Corners, Doubles, Words
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
-FILL, DEGREE, LIMIT = 11, 12, 13
+FILL, DEGREE, LIMIT, BOTTOM_DEGREE = 11, 12, 13, 14
 """Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its
 faces, middle (3) and half sides (3) of its bounding box, the part of its volume that displaces
-water, and its `local.plan` (2)."""
+water, and its `planning.plan` (3)."""
 AREA_OF_FACE = 3
 """Column of `Hulls.areas` behind the vector area (3)."""
 
@@ -30,8 +30,8 @@ class Hulls(NamedTuple):
     """Bounding box of each node: middle and half sides [m]."""
     moments: Annotated[Doubles, ("n", 31)]
     """Moments of the vector area under each node, times the part that displaces; and the area."""
-    whole: Annotated[Doubles, ("h", 14)]
-    """Each hull as a whole, in columns `WHOLE_VOLUME` to `LIMIT`."""
+    whole: Annotated[Doubles, ("h", 15)]
+    """Each hull as a whole, in columns `WHOLE_VOLUME` to `BOTTOM_DEGREE`."""
     typical: Annotated[Doubles, ("d",)]
     """Typical wave numbers of the sea by depth, see `pressure.typical` [rad/m]."""
     frames: Annotated[Words, ("h",)]

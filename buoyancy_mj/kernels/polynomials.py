@@ -46,6 +46,25 @@ def add_series(flat, start, degree, crest, slope, kx, ky):
 
 
 @njit(cache=True, error_model="numpy")
+def add_powers(line, start, even, odd, k):
+    """Add the series of even cosh k z + odd sinh k z, of the degree `LARGEST`, to coefficients."""
+    one, two, power = even, odd, 1.0
+    for n in range(LARGEST + 1):
+        line[start + n] += one * power
+        one, two = two, one
+        power *= k * _INVERSE[n]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def on_powers(line, start, z):
+    """A polynomial in z of the degree `LARGEST`."""
+    total = 0.0
+    for n in range(LARGEST, -1, -1):
+        total = total * z + line[start + n]
+    return total
+
+
+@njit(cache=True, error_model="numpy")
 def with_gradient(flat, start, degree, x, y):
     """A polynomial in x, y at a place, and its gradient, by Horner's rule."""
     i = start + size(degree)
@@ -71,20 +90,19 @@ def add_at_many(flat, start, degree, x, y, count, row, total, out):
 
 
 @njit(cache=True, error_model="numpy")
-def add_in_space_at_many(solid, start, degree, x, y, z, count, row, total, whole, out):
-    """Add a polynomial in x, y, z at `count` places to `out`.
+def set_in_space_at_many(solid, start, degree, x, y, z, count, row, level, out, slope):
+    """Write a polynomial in x, y, z at `count` places to `out`, and its slope along z to `slope`.
 
-    `row`, `total` and `whole` are scratch.
+    `row` and `level` are scratch.
     """
     for v in range(count):
-        whole[v] = 0.0
+        out[v] = slope[v] = 0.0
     i = start + size_in_space(degree)
     for p in range(degree, -1, -1):
-        i = _set_at_many(solid, i, degree - p, x, y, count, row, total)
+        i = _set_at_many(solid, i, degree - p, x, y, count, row, level)
         for v in range(count):
-            whole[v] = whole[v] * z[v] + total[v]
-    for v in range(count):
-        out[v] += whole[v]
+            slope[v] = slope[v] * z[v] + out[v]
+            out[v] = out[v] * z[v] + level[v]
 
 
 @njit(cache=True, error_model="numpy", inline="always")

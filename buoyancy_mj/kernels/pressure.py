@@ -13,7 +13,13 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import local, tree
 from buoyancy_mj.kernels.expansions import add_node, sum_nodes
-from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
+from buoyancy_mj.kernels.hulls import (
+    BOTTOM_DEGREE,
+    DEGREE,
+    LIMIT,
+    WHOLE_HALF,
+    WHOLE_MIDDLE,
+)
 from buoyancy_mj.kernels.local import HEAD, elevations, gather, surface
 from buoyancy_mj.kernels.quadrature import Setting, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
@@ -129,7 +135,8 @@ def _gather(level, waves, wholes, h, origin, r, time, dynamic, near):
     dry = level + eta - z <= -radius - spread
     if not dry:
         degree, limit = int(wholes[h, DEGREE]), wholes[h, LIMIT]
-        gather(waves, x, y, z - level, eta, time, radius, degree, limit, dynamic, near)
+        bottom = int(wholes[h, BOTTOM_DEGREE])
+        gather(waves, x, y, z - level, eta, time, radius, degree, limit, bottom, dynamic, near)
     return dry, curvature
 
 

@@ -23,7 +23,7 @@ from buoyancy_mj.kernels.inertia import set_to_body
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.spatial_inertia import find_hold, set_inertia
 from buoyancy_mj.kernels.vectors import difference, rotate, rotate_back, triple
-from buoyancy_mj.kernels.waves import add_acceleration, add_velocity
+from buoyancy_mj.kernels.waves import add_motion
 from buoyancy_mj.kernels.wet_share import set_gradient, wet_share
 
 
@@ -105,8 +105,7 @@ def _subtract_water(sea, time, r, at, v, rate):
     x, y, z = at
     set_current(sea.current, sea.level - z, time, water)
     set_rate(sea.current, time, rush)
-    add_velocity(sea.waves, x, y, z - sea.level, time, water)
-    add_acceleration(sea.waves, x, y, z - sea.level, time, rush)
+    add_motion(sea.waves, x, y, z - sea.level, time, water, rush)
     u0, u1, u2 = rotate_back(r, water[0], water[1], water[2])
     a0, a1, a2 = rotate_back(r, rush[0], rush[1], rush[2])
 

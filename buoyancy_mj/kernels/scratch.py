@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import local, swell
 from buoyancy_mj.kernels.arrays import Doubles, Words, leaves
 from buoyancy_mj.kernels.expansions import NODES
+from buoyancy_mj.kernels.planning import MOST
 from buoyancy_mj.kernels.quadrature import PLACES
 
 
@@ -21,7 +22,7 @@ class CutScratch(NamedTuple):
     """The near waves of `swell`."""
     flat: Annotated[Doubles, (local.FLAT,)]
     """The polynomial of `swell`."""
-    ray: Annotated[Doubles, (local.MOST + 1,)]
+    ray: Annotated[Doubles, (MOST + 1,)]
     """That polynomial along a ray."""
 
 

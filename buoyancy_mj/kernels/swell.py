@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-from buoyancy_mj.kernels import local
+from buoyancy_mj.kernels import planning
 from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
 from buoyancy_mj.kernels.series import bend, doublings
@@ -119,7 +119,7 @@ def _gather(waves, origin, r, whole, h, time, swell, flat):
         phase = phase_at(waves, w, x, y, time)
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
         steepest = max(steepest, math.sqrt(kx * kx + ky * ky))
-        if local.remainder(waves, w, radius) <= limit:
+        if planning.remainder(waves, w, radius) <= limit:
             add_series(flat, 0, degree, crest, slope, kx, ky)
             continue
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]

@@ -5,10 +5,21 @@ A row with kx = ky = 0 is the whole level going up and down, the limit of an inf
 
 import math
 
+import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels import series
 from buoyancy_mj.kernels.currents import set_current, set_rate
+from buoyancy_mj.kernels.still_water import (
+    LEAST_STRETCH,
+    calm,
+    decay,
+    fade,
+    newton,
+    seabed,
+    settle,
+    still_height,
+)
 from buoyancy_mj.kernels.vectors import triple
 
 AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH, SIGMA = range(7)
@@ -78,92 +89,141 @@ def swing(waves, x, y, time, radius):
 def head(waves, x, y, z, time, dynamic):
     """Pressure over rho g [m] at height z over the still level.
 
-    It is the depth under the surface, or with `dynamic` the pressure of linear waves.
+    It is the depth under the surface, or with `dynamic` the pressure of waves.
 
-    Newman 1977, 6.2: the elevation times cosh k (z + h) over cosh k h, less z. Wheeler's stretching
-    (1970, J. Petroleum Technology 22, 359) brings the surface to the theory's still level, so that
-    the pressure is zero on it, under crests and in troughs.
+    The water at height z stood at z' in still water: z = z' + sum eta S(z'), its rise in linear
+    theory, and the head is -z' + sum eta (C - S), with C = cosh k (z' + h) / cosh k h and S = sinh
+    k (z' + h) / sinh k h (Newman 1977, 6.2). It is zero on the surface, where z' = 0. To first
+    order it is that of linear theory, and its mean is less than still water's by <w^2> / g, w the
+    vertical velocity (Longuet-Higgins and Stewart 1964, *Deep-Sea Research* 11, 529). Far below
+    the surface it is linear theory with that mean alone, see `settle`.
     """
-    eta = elevation(waves, x, y, time)
+    eta, fall, depth = survey(waves, x, y, time)
     if not dynamic:
         return eta - z
-    total = -z
+    still = still_height(z, eta, fall, depth)
+    rise = strain = rest = rest_strain = mean = whole = tide = 0.0
     for i in range(waves.shape[0]):
         a = waves[i, AMPLITUDE] * math.cos(phase_at(waves, i, x, y, time))
-        k, depth = math.hypot(waves[i, KX], waves[i, KY]), waves[i, DEPTH]
-        total += a * fade(k, depth, stretch(z, eta, depth))[0]
-    return total
+        k = math.hypot(waves[i, KX], waves[i, KY])
+        wide, narrow, tanh = fade(k, seabed(k, waves[i, DEPTH]), still)
+        rise += a * narrow
+        strain += a * k * wide
+        rest += a * (wide * tanh - narrow)
+        rest_strain += a * k * (narrow * tanh - wide)
+        square = 0.5 * waves[i, AMPLITUDE] ** 2 * k * tanh
+        mean += square * narrow * narrow
+        whole += square
+        tide += a if k == 0.0 else 0.0
+    return settle(z, still, rise, strain, rest, rest_strain, tide, mean, whole)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def stretch(z, eta, depth):
-    """Where Wheeler's stretching brings a height over the still level; never under the bottom."""
-    below = z - eta
-    if math.isfinite(depth):
-        below = max(depth * below / (depth + eta), -depth) if depth + eta > 0.0 else -depth
-    return below
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def fade(k, depth, z):
-    """Cosh and sinh of k (z + h) over cosh k h: how a wave's pressure and its slope fade."""
-    if k == 0.0:
-        return 1.0, 1.0
-    even = odd = math.exp(k * z)
-    if math.isfinite(depth):
-        echo, bottom = math.exp(-2.0 * k * (z + depth)), 1.0 + math.exp(-2.0 * k * depth)
-        even, odd = even * (1.0 + echo) / bottom, odd * (1.0 - echo) / bottom
-    return even, odd
+@njit(cache=True, error_model="numpy")
+def survey(waves, x, y, time):
+    """Elevation at a place, how fast the waves fade with depth [1/m], and the water's depth [m]."""
+    eta = weighted = energy = 0.0
+    depth = math.inf
+    for i in range(waves.shape[0]):
+        amplitude, kx, ky = triple(waves, i, AMPLITUDE)
+        eta += amplitude * math.cos(phase_at(waves, i, x, y, time))
+        energy += amplitude * amplitude
+        weighted += amplitude * amplitude * math.sqrt(kx * kx + ky * ky)
+        depth = min(depth, waves[i, DEPTH])
+    return eta, decay(weighted / energy if energy > 0.0 else 0.0, depth), depth
 
 
 @njit(cache=True, error_model="numpy")
 def add_velocity(waves, x, y, z, time, out):
-    """Add the rows' orbital velocity [m/s] at height z above the still level to `out` (3,).
+    """Add the waves' velocity [m/s] at height z above the still level to `out` (3,).
 
-    Linear theory (Newman 1977, 6.2): cosh and sinh of k (z + h) over sinh of k h. Above the still
-    level, where the theory has no water, its value at the level is taken.
+    See `add_motion`.
     """
-    z = min(z, 0.0)
-    for i in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, i, AMPLITUDE)
-        sigma, angle = waves[i, SIGMA], phase_at(waves, i, x, y, time)
-        k = math.hypot(kx, ky)
-        if k == 0.0:
-            out[2] += amplitude * sigma * math.sin(angle)
-            continue
-        depth = waves[i, DEPTH]
-        height = max(z, -depth)
-        # e^{kz} (1 +- e^{-2k(z+h)}) / (1 - e^{-2kh}) is cosh and sinh over sinh without overflow
-        decay = math.exp(k * height) / (-math.expm1(-2.0 * k * depth))
-        echo = math.exp(-2.0 * k * (height + depth))
-        horizontal = amplitude * sigma * decay * (1.0 + echo) * math.cos(angle)
-        out[0] += horizontal * kx / k
-        out[1] += horizontal * ky / k
-        out[2] += amplitude * sigma * decay * (1.0 - echo) * math.sin(angle)
+    u, v, w, _, _, _ = _motion(waves, x, y, z, time)
+    out[0] += u
+    out[1] += v
+    out[2] += w
 
 
 @njit(cache=True, error_model="numpy")
-def add_acceleration(waves, x, y, z, time, out):
-    """Add the rows' orbital acceleration [m/s^2], at one place, to `out` (3,).
+def add_motion(waves, x, y, z, time, velocity, acceleration):
+    """Add the waves' velocity [m/s] and acceleration [m/s^2] to `velocity` and `acceleration` (3,).
 
-    It is the rate of `add_velocity` in time for who drifts with the current, as the water does.
+    That is linear theory (Newman 1977, 6.2), cosh and sinh of k (z + h) over sinh of k h: near the
+    surface at the height where the water stood in still water, far below at its height itself, as
+    `head` has it. Above the surface, where there is no water, all is as on the surface.
+
+    The acceleration is that of the water as it moves, with the convective part, as the pressure
+    gives it.
     """
-    z = min(z, 0.0)
+    u, v, w, du, dv, dw = _motion(waves, x, y, z, time)
+    velocity[0] += u
+    velocity[1] += v
+    velocity[2] += w
+    acceleration[0] += du
+    acceleration[1] += dv
+    acceleration[2] += dw
+
+
+@njit(cache=True, error_model="numpy")
+def _motion(waves, x, y, z, time):
+    """The waves' velocity (3) and acceleration (3) at a place."""
+    eta, fall, depth = survey(waves, x, y, time)
+    still = still_height(z, eta, fall, depth)
+
+    # at the guess: velocity and acceleration, how they change with height, the water's rise and
+    # its slopes, and what follows from the square of the waves
+    u = v = w = du = dv = dw = 0.0
+    u_z = v_z = w_z = du_z = dv_z = dw_z = 0.0
+    rise = strain = along = across = tide = 0.0
+    mean = whole = mean_z = drift_x = drift_y = 0.0
     for i in range(waves.shape[0]):
         amplitude, kx, ky = triple(waves, i, AMPLITUDE)
         sigma, angle = waves[i, SIGMA], phase_at(waves, i, x, y, time)
-        k = math.hypot(kx, ky)
+        crest, slope = amplitude * math.cos(angle), amplitude * math.sin(angle)
+        k = math.sqrt(kx * kx + ky * ky)
+        wide, narrow, _ = fade(k, seabed(k, waves[i, DEPTH]), still)
+        bx, by = (kx / k, ky / k) if k > 0.0 else (0.0, 0.0)
+
+        # along the wave, and upright
+        ahead, ahead_z = sigma * crest * wide, sigma * crest * k * narrow
+        up, up_z = sigma * slope * narrow, sigma * slope * k * wide
+        push, push_z = sigma * sigma * slope * wide, sigma * sigma * slope * k * narrow
+        u, v, w = u + bx * ahead, v + by * ahead, w + up
+        u_z, v_z, w_z = u_z + bx * ahead_z, v_z + by * ahead_z, w_z + up_z
+        du, dv, dw = du + bx * push, dv + by * push, dw - sigma * sigma * crest * narrow
+        du_z, dv_z = du_z + bx * push_z, dv_z + by * push_z
+        dw_z -= sigma * sigma * crest * k * wide
+        rise += crest * narrow
+        strain += crest * k * wide
+        along -= kx * slope * narrow
+        across -= ky * slope * narrow
+
+        # the square of the upright velocity at all times; of all the water that rises there is none
         if k == 0.0:
-            out[2] -= amplitude * sigma * sigma * math.cos(angle)
+            tide += crest
             continue
-        depth = waves[i, DEPTH]
-        height = max(z, -depth)
-        decay = math.exp(k * height) / (-math.expm1(-2.0 * k * depth))
-        echo = math.exp(-2.0 * k * (height + depth))
-        horizontal = amplitude * sigma * sigma * decay * (1.0 + echo) * math.sin(angle)
-        out[0] += horizontal * kx / k
-        out[1] += horizontal * ky / k
-        out[2] -= amplitude * sigma * sigma * decay * (1.0 - echo) * math.cos(angle)
+        speed = amplitude * sigma
+        whole += speed * speed
+        mean += speed * speed * narrow * narrow
+        mean_z += speed * speed * k * wide * narrow
+        drift_x += 0.5 * speed * amplitude * kx * narrow * narrow
+        drift_y += 0.5 * speed * amplitude * ky * narrow * narrow
+
+    # from the guess to the still height, and to the height itself where it is calm
+    far = calm(mean, whole)
+    near = 1.0 - far
+    step = near * min(newton(z, still, rise, strain), -still) + far * (z - tide - still)
+    step = max(step, -depth - still)
+    u, v, w = u + u_z * step, v + v_z * step, w + w_z * step
+    du, dv, dw = du + du_z * step, dv + dv_z * step, dw + dw_z * step
+
+    # at heights that move with the water the mean at a place lacks half of Stokes' drift
+    u, v = u + near * drift_x, v + near * drift_y
+
+    # the convective part
+    dw /= max(1.0 + near * strain, LEAST_STRETCH)
+    du, dv = du - near * along * dw, dv - near * across * dw
+    return u, v, w, du, dv, dw + far * mean_z
 
 
 # at many points, for Python
@@ -196,7 +256,7 @@ def slopes(waves, x, y, time, out):
 
 @njit(cache=True, error_model="numpy")
 def heads(waves, points, level, time, out):
-    """Write `head` of linear waves at points (n, 3) to `out` (n,)."""
+    """Write `head` of waves at points (n, 3) to `out` (n,)."""
     for i in range(points.shape[0]):
         x, y, z = triple(points, i, 0)
         out[i] = head(waves, x, y, z - level, time, True)
@@ -215,9 +275,11 @@ def velocities(waves, current, points, level, time, out):
 def accelerations(waves, current, points, level, time, out):
     """Write the acceleration of current and waves [m/s^2] at points (n, 3) to `out` (n, 3).
 
-    It is that of the water, which drifts with the current.
+    It is that of the waves' water, and the rate of the current at places that stay.
     """
+    unused = np.empty(3)
     for i in range(points.shape[0]):
         x, y, z = triple(points, i, 0)
         set_rate(current, time, out[i])
-        add_acceleration(waves, x, y, z - level, time, out[i])
+        unused[:] = 0.0
+        add_motion(waves, x, y, z - level, time, unused, out[i])

@@ -72,9 +72,9 @@ class Water:
         # the current, which the waves meet
         if not isinstance(self.current, CurrentProfile | CurrentSeries):
             object.__setattr__(self, "current", parse_velocity(self.current))
-        if len(self._rows) > MOST_WAVES:
+        if len(self._all_rows) > MOST_WAVES:
             raise WaterError(
-                f"the sea has {len(self._rows)} waves; it may have {MOST_WAVES} at most, "
+                f"the sea has {len(self._all_rows)} waves; it may have {MOST_WAVES} at most, "
                 "so leave out the smallest"
             )
 
@@ -88,7 +88,8 @@ class Water:
         """The components of all waves on the current as rows (n, 7), read-only.
 
         The columns are those of `Wave.rows`, and the angular frequency sigma [rad/s] that the water
-        sees, which drifts with the current; see `kernels.waves`.
+        sees, which drifts with the current; see `kernels.waves`. Components that differ in
+        amplitude and phase alone are one wave.
         """
         return _read_only(self._rows)
 
@@ -101,6 +102,10 @@ class Water:
 
     @functools.cached_property
     def _rows(self) -> NDArray[np.float64]:
+        return _join_equal(self._all_rows)
+
+    @functools.cached_property
+    def _all_rows(self) -> NDArray[np.float64]:
         return np.concatenate([np.zeros((0, 7)), *self._rows_by_wave])
 
     @functools.cached_property
@@ -207,7 +212,8 @@ class Water:
     def velocity(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Velocity (..., 3) [m/s] of the water at points (..., 3) [m] and a time [s], world frame.
 
-        It is the sum of the current and of the orbital velocities of linear waves.
+        It is the sum of the current and of the velocities of the waves, see
+        `kernels.waves.add_motion`.
         """
         p = _read_points(points)
         out = np.empty((p.size // 3, 3))
@@ -219,9 +225,9 @@ class Water:
     def acceleration(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
         """Acceleration (..., 3) [m/s^2] of the water at points (..., 3) [m] and a time [s].
 
-        It is that of the water itself, which drifts with the current: the rate of `velocity` for
-        who drifts along, and what moves a body with added mass. The part that is convected by the
-        orbital velocity, and by the shear of a profile, is left out.
+        It is that of the water itself as it moves in waves and drifts with the current, which the
+        gradient of `pressure` gives: what moves a body with added mass. The part that the shear of
+        a profile convects is left out.
         """
         p = _read_points(points)
         out = np.empty((p.size // 3, 3))
@@ -235,8 +241,9 @@ class Water:
     ) -> NDArray[np.float64]:
         """Pressure (...) [Pa] in excess of the air's at points (..., 3) [m] in the water.
 
-        It is that of linear waves, stretched to the surface, where it is zero; see
-        `kernels.waves.head`. Above the surface there is no water, and the numbers mean nothing.
+        It is zero on the surface, and far below it that of linear waves less the mean of their
+        square; see `kernels.waves.head`. Above the surface there is no water, and the numbers mean
+        nothing.
 
         Args:
             points: places (..., 3) [m], world frame.
@@ -259,6 +266,24 @@ def _rows_of(wave: Wave) -> NDArray[np.float64]:
     if not (array[:, 5] > 0.0).all():
         raise WaterError(f"{name} hold a depth of {array[:, 5].min():g}; it must be above 0")
     return array
+
+
+def _join_equal(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rows (n, 7) of which those that differ in amplitude and phase alone are joined."""
+    others = np.delete(rows, [kernels.AMPLITUDE, kernels.PHASE], axis=1)
+    _, first, which = np.unique(others, axis=0, return_index=True, return_inverse=True)
+    if len(first) == len(rows):
+        return rows
+
+    # A e^(i phase) adds up; in the order in which each first came
+    sums = np.zeros(len(first), complex)
+    turned = rows[:, kernels.AMPLITUDE] * np.exp(1j * rows[:, kernels.PHASE])
+    np.add.at(sums, which.ravel(), turned)
+    joined = rows[first]
+    joined[:, kernels.AMPLITUDE], joined[:, kernels.PHASE] = np.abs(sums), np.angle(sums)
+    order = np.argsort(first)
+    in_order: NDArray[np.float64] = np.ascontiguousarray(joined[order])
+    return in_order
 
 
 def _read_points(points: ArrayLike) -> NDArray[np.float64]:

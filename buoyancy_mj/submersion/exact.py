@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MethodError, describe
-from buoyancy_mj.kernels import clip, local, pressure, tree, waterplane
+from buoyancy_mj.kernels import clip, planning, pressure, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
@@ -215,7 +215,7 @@ def _hulls(
 def _whole(mesh: TriMesh, fill: float, waves: NDArray[np.float64]) -> list[float]:
     """One row of `Hulls.whole`."""
     half = 0.5 * mesh.extents
-    plan = local.plan(waves, float(np.linalg.norm(half)))
+    plan = planning.plan(waves, float(np.linalg.norm(half)))
     middle = mesh.bounds.mean(axis=0)
     return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, *plan]
 

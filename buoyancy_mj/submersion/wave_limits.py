@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning, WaterError
-from buoyancy_mj.kernels import local, swell
+from buoyancy_mj.kernels import planning, swell
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 
@@ -43,8 +43,8 @@ def check_waves(radius: float, waves: NDArray[np.float64]) -> None:
     panels = math.ceil(steepest * radius / swell.PANEL)
     if panels * len(waves) <= MOST_PANELS:
         return
-    _, limit = local.plan(waves, radius)
-    short = sum(local.remainder(waves, w, radius) > limit for w in range(len(waves)))
+    _, limit, _ = planning.plan(waves, radius)
+    short = sum(planning.remainder(waves, w, radius) > limit for w in range(len(waves)))
     if short * panels > MOST_PANELS:
         raise WaterError(
             f"the water has {short} waves that are short for a hull {2.0 * radius:.3g} m from "

@@ -12,6 +12,7 @@ from buoyancy_mj.validation import (
     bluerov2_heavy,
     coefficients,
     currents,
+    depths,
     entries,
     foils,
     oes_sphere,
@@ -35,6 +36,7 @@ _MODULES = (
     terminal_speeds,
     waves,
     currents,
+    depths,
 )
 CASES: Mapping[str, Case] = {case.name: case for module in _MODULES for case in module.CASES}
 """The cases by name, in the order of the page."""
