@@ -29,7 +29,7 @@ def elevation(rows, x, y, time):
 
 def head(rows, x, y, z, time):
     """Pressure over rho g in waves, with the height in still water by bisection."""
-    amplitude, kx, ky, omega, phase, depth = rows.T
+    amplitude, kx, ky, omega, phase, depth = rows.T[:6]
     k = np.hypot(kx, ky)
     eta = amplitude * np.cos(kx * x + ky * y - omega * time + phase)
 
