@@ -1,5 +1,10 @@
 """What several tests share."""
 
+import atexit
+import os
+import shutil
+import tempfile
+
 import mujoco
 import pytest
 from hypothesis import HealthCheck, settings
@@ -9,6 +14,11 @@ settings.register_profile(
     "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("any machine")
+
+# what is computed once for each shape is kept as long as the tests run, for all their processes
+if "BUOYANCY_MJ_CACHE" not in os.environ:
+    os.environ["BUOYANCY_MJ_CACHE"] = tempfile.mkdtemp(prefix="buoyancy_mj-tests-")
+    atexit.register(shutil.rmtree, os.environ["BUOYANCY_MJ_CACHE"], ignore_errors=True)
 
 CALLBACKS = {
     "mjcb_control": (mujoco.get_mjcb_control, mujoco.set_mjcb_control),

@@ -32,6 +32,10 @@ def to_json(inspection: Inspection) -> dict[str, Any]:
             for one, other, volume in inspection.overlaps
         ],
         "floating": [_convert_vessel(vessel) for vessel in inspection.vessels],
+        "added_mass": {
+            body: _convert(_read_fields(estimate))
+            for body, estimate in inspection.added_mass.items()
+        },
         "problems": list(inspection.problems),
     }
 
