@@ -17,7 +17,7 @@ from buoyancy_mj.validation.case import Case, Row
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "validation.md"
-SLOW = ("sphere_response", "long_waves")
+SLOW = ("sphere_response", "long_waves", "added_mass_table")
 """Cases that run for seconds."""
 
 
