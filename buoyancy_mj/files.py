@@ -1,7 +1,8 @@
 """Files written whole or not at all, under names that nobody else has.
 
 In: a path that somebody asked for.
-Out: a file that may grow beside it, a file that takes its name at the end, and locks.
+Out: a file that may grow beside it, a file that takes its name at the end, and locks; a folder for
+what may be lost.
 May import: nothing of this package.
 """
 
@@ -9,6 +10,7 @@ import contextlib
 import os
 import secrets
 import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -97,6 +99,28 @@ def replace_file(path: Path) -> Iterator[Path]:
         os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def find_cache_folder() -> Path | None:
+    """The user's folder for what this package can compute again; it need not exist.
+
+    The environment variable BUOYANCY_MJ_CACHE names another one. If it is empty, or for a user
+    without a home, there is none.
+    """
+    chosen = os.environ.get("BUOYANCY_MJ_CACHE")
+    if chosen is not None:
+        return Path(chosen).absolute() if chosen else None
+    try:
+        home = Path.home()
+    except RuntimeError:
+        return None
+    if sys.platform == "darwin":
+        folder = home / "Library" / "Caches"
+    elif os.name == "nt":
+        folder = Path(os.environ.get("LOCALAPPDATA") or home / "AppData" / "Local")
+    else:
+        folder = Path(os.environ.get("XDG_CACHE_HOME") or home / ".cache")
+    return folder / "buoyancy_mj" if folder.is_absolute() else None
 
 
 def require_own(path: Path, mark: str) -> None:

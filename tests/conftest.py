@@ -1,6 +1,10 @@
 """What several tests share."""
 
+import atexit
+import os
+import shutil
 import signal
+import tempfile
 
 import mujoco
 import pytest
@@ -19,6 +23,11 @@ for number, default in (
 ):
     if signal.getsignal(number) is signal.SIG_IGN:
         signal.signal(number, default)
+
+# what is computed once for each shape is kept as long as the tests run, for all their processes
+if "BUOYANCY_MJ_CACHE" not in os.environ:
+    os.environ["BUOYANCY_MJ_CACHE"] = tempfile.mkdtemp(prefix="buoyancy_mj-tests-")
+    atexit.register(shutil.rmtree, os.environ["BUOYANCY_MJ_CACHE"], ignore_errors=True)
 
 CALLBACKS = {
     "mjcb_control": (mujoco.get_mjcb_control, mujoco.set_mjcb_control),

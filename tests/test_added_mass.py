@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 from buoyancy_mj import Buoyancy, ModelError, RegularWave, Settings, Water, add_water, water_in
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.kernels.waves import add_motion, add_velocity
-from buoyancy_mj.loads.added_mass import ellipsoid_added_mass, estimate_added_mass
+from buoyancy_mj.loads.added_mass_estimates import estimate_added_mass
+from buoyancy_mj.potential.ellipsoid import ellipsoid_added_mass
 from tests import vessels
 
 DIAGONAL = np.array([3.0, 9.0, 14.0, 0.2, 0.5, 0.4])
@@ -68,7 +69,7 @@ def test_the_estimate_for_an_ellipsoid_is_exact_wherever_it_sits():
     model = vessels.of_geoms(
         '<geom type="ellipsoid" size=".5 .3 .2" pos=".1 .2 -.1" euler="20 30 40" mass="9"/>'
     )
-    matrix = estimate_added_mass(find_hulls(model), 1025.0)
+    matrix = estimate_added_mass(find_hulls(model), 1025.0).matrix
     turn = np.empty(9)
     mujoco.mju_quat2Mat(turn, model.geom_quat[0])
     axes = np.kron(np.eye(2), turn.reshape(3, 3))
@@ -88,8 +89,8 @@ def test_two_hulls_of_one_body_count_together():
         '<geom type="box" size=".5 .3 .2" pos=".5 0 0" mass="9"/>'
         '<geom type="box" size=".5 .3 .2" pos="-.5 0 0"/>'
     )
-    assert estimate_added_mass(find_hulls(two), 1000.0) == pytest.approx(
-        estimate_added_mass(find_hulls(one), 1000.0), abs=1e-6
+    assert estimate_added_mass(find_hulls(two), 1000.0, "ellipsoid").matrix == pytest.approx(
+        estimate_added_mass(find_hulls(one), 1000.0, "ellipsoid").matrix, abs=1e-6
     )
 
 
@@ -431,7 +432,11 @@ def test_above_the_water_nothing_is_added():
 @pytest.mark.parametrize(
     ("added_mass", "message"),
     [
-        ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
+        (
+            "guess",
+            "added mass is 'guess'; "
+            "possible: ellipsoid, estimate, mesh, model, none, or matrices by body",
+        ),
         (
             {"boat": DIAGONAL},
             "added mass is given for body 'boat', which has no hull of its own; "
@@ -470,8 +475,16 @@ def test_added_mass_that_makes_no_sense_is_refused(added_mass, message):
 def test_added_mass_of_a_body_that_there_is_not_waits_for_the_model_and_all_else_does_not():
     Settings(added_mass={"no such body": DIAGONAL})
     for added_mass, message in (
-        ("guess", "added mass is 'guess'; possible: estimate, model, none, or matrices by body"),
-        (5, "added mass is 5; possible: estimate, model, none, or matrices by body"),
+        (
+            "guess",
+            "added mass is 'guess'; "
+            "possible: ellipsoid, estimate, mesh, model, none, or matrices by body",
+        ),
+        (
+            5,
+            "added mass is 5; "
+            "possible: ellipsoid, estimate, mesh, model, none, or matrices by body",
+        ),
         ({"hull": np.zeros((3, 12))}, "of shape (3, 12); it must be numbers of shape (6,)"),
         ({"hull": np.eye(6) * 1j}, "it must be numbers of shape (6,) or (36,) or (6, 6)"),
         ({"hull": [10**400] * 6}, "it must be numbers of shape (6,) or (36,) or (6, 6)"),

@@ -22,10 +22,11 @@ from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.inspection.json_report import to_json
 from buoyancy_mj.inspection.report import to_markdown
-from buoyancy_mj.loads.added_mass import ellipsoid_added_mass, resolve_added_mass
+from buoyancy_mj.loads.added_mass import resolve_added_mass
 from buoyancy_mj.loads.foil_arrays import find_foils
 from buoyancy_mj.loads.foils import Foil, finite_slope, parse_foil
 from buoyancy_mj.loads.plates import estimate_plate
+from buoyancy_mj.potential.ellipsoid import ellipsoid_added_mass
 from buoyancy_mj.validation import foils as validation
 
 from . import naive

@@ -18,7 +18,7 @@ from buoyancy_mj.validation.case import Case, Row
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "validation.md"
-SLOW = ("sphere_response", "long_waves", "stokes_drift")
+SLOW = ("sphere_response", "long_waves", "stokes_drift", "added_mass_table")
 """Cases that run for seconds."""
 
 

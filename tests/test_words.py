@@ -666,7 +666,8 @@ def test_an_empty_pattern_is_refused(value):
 @pytest.mark.parametrize("source", [True, 5, ["model"], np.eye(6), b"model", "modl"])
 def test_a_source_of_added_mass_of_another_kind_is_refused(source):
     with pytest.raises(
-        ModelError, match=r"^added mass is .*; .*possible: estimate, model, none, or"
+        ModelError,
+        match=r"^added mass is .*; .*possible: ellipsoid, estimate, mesh, model, none, or",
     ):
         Buoyancy(with_custom(""), added_mass=source)
     with pytest.raises(

@@ -22,6 +22,7 @@ from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.inspection import json_report, report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
+from buoyancy_mj.loads.added_mass import SOURCES, check_source
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import compile_spec
@@ -36,6 +37,12 @@ def inspect_(
     model: ModelArgument,
     water: WaterOption = None,
     as_json: Json = False,
+    added_mass: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SOURCE", help=f"Report added mass: {', '.join(SOURCES[:-1])}; see the guide."
+        ),
+    ] = None,
     plot: Annotated[
         Path | None,
         typer.Option(metavar="DIR", help="Draw plots into this folder, beside a report.md."),
@@ -58,12 +65,17 @@ def inspect_(
     The report also tells what is wrong with meshes. Exit status 1 says that a mesh is refused.
     """
     check_recording_name(record)
+    check_source(added_mass)
     path = catalog.model_path(model)
     spec = read_vehicle(path)
     compiled = compile_spec(spec, path)
     with err.status("inspecting"):
         inspection = inspect_model(
-            compiled, parse_still_water(water), selection=selection.selection, title=path.stem
+            compiled,
+            parse_still_water(water),
+            selection=selection.selection,
+            title=path.stem,
+            added_mass=added_mass,
         )
 
     # the report

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+from numpy.typing import ArrayLike
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning
 from buoyancy_mj.hulls.bodies import group_floating_bodies
@@ -20,6 +21,8 @@ from buoyancy_mj.hulls.tethers import list_roots
 from buoyancy_mj.hulls.verdicts import judge_geoms
 from buoyancy_mj.inspection.geoms import GeomInspection, inspect_geom
 from buoyancy_mj.inspection.vessels import VesselInspection, inspect_vessel
+from buoyancy_mj.loads.added_mass import find_estimates
+from buoyancy_mj.loads.added_mass_estimates import Estimate
 from buoyancy_mj.loads.foil_arrays import PlacedFoil, find_foils
 from buoyancy_mj.meshes.overlaps import find_close_pairs, measure_overlaps
 from buoyancy_mj.sea.water import Water
@@ -56,6 +59,8 @@ class Inspection:
     """Each vessel: a kinematic tree with hulls, or what welds and connects hold together."""
     problems: tuple[str, ...]
     """Why a geom, a vessel or the whole cannot be put to sea, with the mend."""
+    added_mass: Mapping[str, Estimate] = dataclasses.field(default_factory=dict)
+    """Added mass by the name of the body; empty if it was not asked for, or a mesh is refused."""
 
 
 def inspect_model(
@@ -64,6 +69,7 @@ def inspect_model(
     *,
     selection: Selection = Selection(),
     title: str = "model",
+    added_mass: str | Mapping[str, ArrayLike] | None = None,
 ) -> Inspection:
     """Inspect a model; a mesh that is refused is named and left out, and the rest goes on.
 
@@ -72,9 +78,12 @@ def inspect_model(
         water: the sea, whose still level alone counts; fresh water with its level at z = 0 if None.
         selection: which geoms displace water, and as what.
         title: title of the report.
+        added_mass: where added mass comes from that is to be reported, as `Buoyancy` takes it; None
+            to report none.
 
     Raises:
-        ModelError: no geom displaces water, or the selection or a foil makes no sense.
+        ModelError: no geom displaces water, or the selection, the added mass or a foil makes no
+            sense.
     """
     water = water or Water()
 
@@ -109,6 +118,12 @@ def inspect_model(
             vessels.append(inspect_vessel(vessel, hulls, refused, notices_of_vessel))
         except BuoyancyError as error:
             problems.append(str(error))
+
+    # added mass, where all hulls are known
+    found: dict[str, Estimate] = {}
+    if len(sound) == len(selected):
+        found, doubts = _find_added_mass(model, hulls, foils, water, added_mass)
+        notices += doubts
     return Inspection(
         title=title,
         water=water,
@@ -117,6 +132,7 @@ def inspect_model(
         foils=foils,
         vessels=tuple(vessels),
         problems=(*problems, *notices),
+        added_mass=found,
     )
 
 
@@ -131,6 +147,21 @@ def _build_hulls(
         warnings.simplefilter("always", BuoyancyWarning)
         hulls = build_hulls(model, geoms, forms, fills)
     return hulls, [str(entry.message) for entry in caught]
+
+
+def _find_added_mass(
+    model: mujoco.MjModel,
+    hulls: Sequence[Hull],
+    foils: Sequence[PlacedFoil],
+    water: Water,
+    source: str | Mapping[str, ArrayLike] | None,
+) -> tuple[dict[str, Estimate], list[str]]:
+    """Added mass by the name of the body, and the warnings that came with it."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", BuoyancyWarning)
+        found = find_estimates(model, hulls, water.density, source, foils)
+    by_name = {body_name(model, body): estimate for body, estimate in sorted(found.items())}
+    return by_name, [str(entry.message) for entry in caught]
 
 
 def _build_vessel(

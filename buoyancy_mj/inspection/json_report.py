@@ -34,6 +34,10 @@ def to_json(inspection: Inspection) -> dict[str, Any]:
         ],
         "foils": [_convert_foil(foil) for foil in inspection.foils],
         "floating": [_convert_vessel(vessel) for vessel in inspection.vessels],
+        "added_mass": {
+            body: _convert(_read_fields(estimate))
+            for body, estimate in inspection.added_mass.items()
+        },
         "problems": list(inspection.problems),
     }
 

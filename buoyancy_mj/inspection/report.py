@@ -1,7 +1,8 @@
 """An `Inspection` as text: tables for a terminal, and Markdown."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Group, RenderableType
 from rich.table import Table
@@ -11,6 +12,7 @@ from buoyancy_mj.inspection.geom_sections import describe_geoms, describe_meshes
 from buoyancy_mj.inspection.inspection import Inspection, Overlap
 from buoyancy_mj.inspection.tables import Section, format_degrees, format_number
 from buoyancy_mj.inspection.vessel_sections import describe_vessel
+from buoyancy_mj.loads.added_mass_estimates import Estimate
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
 
 
@@ -26,6 +28,8 @@ def list_sections(inspection: Inspection) -> tuple[Section, ...]:
         sections.append(_describe_foils(inspection.foils))
     for vessel in inspection.vessels:
         sections += describe_vessel(vessel, alone=len(inspection.vessels) == 1)
+    if inspection.added_mass:
+        sections.append(_describe_added_mass(inspection.added_mass))
     if inspection.problems:
         sections.append(Section("Problems", (), (), inspection.problems))
     return tuple(sections)
@@ -84,6 +88,26 @@ def _describe_foils(foils: Sequence[PlacedFoil]) -> Section:
             )
             for foil in foils
         ),
+    )
+
+
+def _describe_added_mass(estimates: Mapping[str, Estimate]) -> Section:
+    """Added mass of each body fully under water, and where it comes from."""
+    rows = []
+    for name, estimate in estimates.items():
+        share = f"{100.0 * estimate.change:.1f}" if estimate.triangles else "-"
+        diagonal = (format_number(value) for value in np.diag(estimate.matrix))
+        rows.append((name, *diagonal, estimate.method, share))
+    return Section(
+        title="Added mass fully submerged, about the origin of each body",
+        header=(
+            "body",
+            *(f"{name} [kg]" for name in ("surge", "sway", "heave")),
+            *(f"{name} [kg m^2]" for name in ("roll", "pitch", "yaw")),
+            "from",
+            "extrapolated [%]",
+        ),
+        rows=tuple(rows),
     )
 
 

@@ -1,26 +1,26 @@
 """Added mass of bodies: given by the model or the user, or estimated from the hulls."""
 
-import math
+import dataclasses
+import warnings
 from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import elliprd
 
-from buoyancy_mj.errors import ModelError, choices, describe
+from buoyancy_mj.errors import BuoyancyWarning, ModelError, choices, describe
 from buoyancy_mj.hulls.custom import find_body, read_numerics
-from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
+from buoyancy_mj.hulls.hull import Hull, group_by_body
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.inertia import AddedMass
+from buoyancy_mj.loads.added_mass_estimates import Estimate, estimate_added_mass
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
-from buoyancy_mj.loads.full_inertia import QUANTITY
-from buoyancy_mj.loads.matrices import move_to_origin, parse_matrix
+from buoyancy_mj.loads.full_inertia import ESTIMATES, QUANTITY
+from buoyancy_mj.loads.matrices import parse_matrix
 from buoyancy_mj.loads.plates import estimate_plate
-from buoyancy_mj.meshes.mesh import TriMesh
 
-SOURCES = ("model", "estimate", "none")
-"""Where added mass comes from: the model's numerics; an estimate for bodies without; nowhere."""
+SOURCES = ("model", *ESTIMATES, "none")
+"""Where added mass comes from: the model's numerics; these and estimates; nowhere."""
 
 
 def check_source(source: object) -> None:
@@ -65,21 +65,11 @@ def resolve_added_mass(
 
     Raises:
         ModelError: an unknown source or body; a matrix of another size, not finite, not symmetric
-            or not positive; one that does not fit into what MuJoCo keeps of a body's inertia; or
-            slamming where no body has added mass.
+            or not positive; an estimate by 'mesh' that is not to be trusted; added mass that does
+            not fit into what MuJoCo keeps of a body's inertia; or slamming where no body has any.
     """
-    check_source(source)
-
-    # by the user, by the model, or by an estimate
-    by_body = group_by_body(hulls)
-    matrices = _read_matrices(model, list(by_body), source)
-    if source == "estimate":
-        for body in by_body.keys() - matrices.keys():
-            matrices[body] = estimate_added_mass(by_body[body], density)
-            displacing = {geom for hull in by_body[body] for geom in hull.geoms}
-            for foil in foils:
-                if foil.body == body and foil.geom not in displacing:
-                    matrices[body] = matrices[body] + estimate_plate(foil, density)
+    found = find_estimates(model, hulls, density, source, foils)
+    matrices = {body: estimate.matrix for body, estimate in found.items()}
 
     # in the order of the model
     bodies = sorted(matrices)
@@ -90,6 +80,7 @@ def resolve_added_mass(
             "slamming is true, and no body has added mass; give the model numerics "
             "'added_mass:BODY', or choose added_mass='estimate'"
         )
+    by_body = group_by_body(hulls)
     volumes = [sum(hull.displaced_volume for hull in by_body[body]) for body in bodies]
     owners = np.array([hull.body for hull in hulls])
     own_hulls, hull_starts = _join([np.flatnonzero(owners == body) for body in bodies])
@@ -112,59 +103,60 @@ def _join(groups: Sequence[NDArray[np.int64]]) -> tuple[NDArray[np.int64], NDArr
     return np.concatenate([np.zeros(0, np.int64), *groups]).astype(np.int64), starts
 
 
-def estimate_added_mass(hulls: Sequence[Hull], density: float) -> NDArray[np.float64]:
-    """Added mass (6, 6) [kg, kg m, kg m^2] of a body about its origin, estimated from its hulls.
-
-    It is that of an ellipsoid with the volume of the hulls and the principal axes and proportions
-    of their second moments: an estimate for compact bodies. Frames, ducts and thin plates carry
-    more water along than it knows.
+def find_estimates(
+    model: mujoco.MjModel,
+    hulls: Sequence[Hull],
+    density: float,
+    source: str | Mapping[str, ArrayLike] | None,
+    foils: Sequence[PlacedFoil] = (),
+) -> dict[int, Estimate]:
+    """Find the added mass of bodies, by their indices, and how it was found.
 
     Args:
-        hulls: all hulls of the body.
-        density: of the water [kg/m^3].
+        model: any model.
+        hulls: its hulls.
+        density: of the water [kg/m^3], for estimates.
+        source: as `resolve_added_mass` takes it.
+        foils: as `resolve_added_mass` takes them.
+
+    Raises:
+        ModelError: as `resolve_added_mass`, whatever MuJoCo keeps of a body's inertia.
     """
-    # the second moments of a solid ellipsoid are a fifth of its squared radii
-    volume, centre = combine_volumes(hulls)
-    spread = sum(hull.fill * _second_moments(hull.mesh_in_body, centre) for hull in hulls) / volume
-    squares, axes = np.linalg.eigh(spread)
-    if np.linalg.det(axes) < 0.0:
-        axes[:, 0] = -axes[:, 0]
-    radii = np.sqrt(5.0 * squares)
-    radii *= (volume / (4.0 / 3.0 * math.pi * radii.prod())) ** (1.0 / 3.0)
+    check_source(source)
+    by_body = group_by_body(hulls)
+    found = {
+        body: Estimate(matrix, "stated")
+        for body, matrix in _read_matrices(model, list(by_body), source).items()
+    }
+    if isinstance(source, str) and source in ESTIMATES:
+        for body in sorted(by_body.keys() - found.keys()):
+            found[body] = estimate_added_mass(by_body[body], density, source)
+            _judge(found[body], body_name(model, body), source)
 
-    # from the ellipsoid's axes to the body's, from its centre to the body's origin
-    body_from_ellipsoid = np.zeros((6, 6))
-    body_from_ellipsoid[:3, :3] = body_from_ellipsoid[3:, 3:] = axes
-    diagonal = np.diag(ellipsoid_added_mass(radii, density))
-    return move_to_origin(body_from_ellipsoid @ diagonal @ body_from_ellipsoid.T, centre)
+            # the plates that are no part of a hull
+            displacing = {geom for hull in by_body[body] for geom in hull.geoms}
+            matrix = found[body].matrix
+            for foil in foils:
+                if foil.body == body and foil.geom not in displacing:
+                    matrix = matrix + estimate_plate(foil, density)
+            found[body] = dataclasses.replace(found[body], matrix=matrix)
+    return found
 
 
-def ellipsoid_added_mass(radii: ArrayLike, density: float) -> NDArray[np.float64]:
-    """Added mass (6,) [kg, kg m^2] of an ellipsoid of radii (3,) [m] along and about its axes.
+def _judge(estimate: Estimate, body: str, source: str) -> None:
+    """Tell of an estimate by potential flow that is not to be trusted, or refuse it.
 
-    Lamb, Hydrodynamics (1932), art. 114, 115; the integrals by Carlson's R_D.
+    Raises:
+        ModelError: nothing else was asked for.
     """
-    a = np.asarray(radii, float)
-    mass = density * 4.0 / 3.0 * math.pi * a.prod()
-    squares = a * a
-    alpha = np.empty(3)
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        alpha[i] = 2.0 / 3.0 * a.prod() * elliprd(squares[j], squares[k], squares[i])
-
-    # along the axes, then about them
-    added = np.zeros(6)
-    added[:3] = mass * alpha / (2.0 - alpha)
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        difference = squares[j] - squares[k]
-        total = squares[j] + squares[k]
-        # a circle that turns carries nothing round
-        if abs(difference) <= 1e-9 * total:
-            continue
-        twist = alpha[k] - alpha[j]
-        added[3 + i] = 0.2 * mass * difference**2 * twist / (2.0 * difference - total * twist)
-    return added
+    if not estimate.doubt:
+        return
+    message = f"the added mass of body '{body}' is not known from its meshes: {estimate.doubt}"
+    if source == "mesh":
+        raise ModelError(f"{message}; added_mass='estimate' takes that of an ellipsoid instead")
+    warnings.warn(
+        f"{message}; that of an ellipsoid is taken instead", BuoyancyWarning, stacklevel=2
+    )
 
 
 def _read_matrices(
@@ -176,7 +168,7 @@ def _read_matrices(
         numbers = {
             find_body(model, name, bodies, QUANTITY): value for name, value in source.items()
         }
-    elif source in ("model", "estimate"):
+    elif source in ("model", *ESTIMATES):
         numbers = read_numerics(model, QUANTITY, bodies)
     else:
         numbers = {}
@@ -209,18 +201,3 @@ def _check_fit(model: mujoco.MjModel, body: int, matrix: NDArray[np.float64]) ->
             "centre of mass is its origin, and its added mass does not fit there; "
             "write <body simple='false'>, or put the water into its MjSpec (add_water)"
         )
-
-
-def _second_moments(mesh: TriMesh, centre: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Integrals of x x, x y, ... over the volume of a mesh, about a point (3, 3) [m^5].
-
-    A sum over tetrahedra with one corner at the point.
-    """
-    corners = np.stack(mesh.corners, axis=1) - centre
-    volumes = np.linalg.det(corners) / 6.0
-    sums = corners.sum(axis=1)
-    moments: NDArray[np.float64] = (
-        np.einsum("n,nij,nik->jk", volumes, corners, corners)
-        + np.einsum("n,nj,nk->jk", volumes, sums, sums)
-    ) / 20.0
-    return moments

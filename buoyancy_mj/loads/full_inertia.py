@@ -14,6 +14,8 @@ from buoyancy_mj.hulls.custom import split_quantity
 
 QUANTITY = "added_mass"
 """Quantity of the model's numerics 'added_mass:BODY'."""
+ESTIMATES = ("estimate", "mesh", "ellipsoid")
+"""Ways to estimate the added mass of bodies for which the model states none."""
 
 
 def keep_full_inertia(bodies: Iterable[mujoco.MjsBody]) -> None:
@@ -36,7 +38,7 @@ def make_room(spec: mujoco.MjSpec, source: str | Mapping[str, ArrayLike] | None)
         splits = [split_quantity(numeric.name) for numeric in spec.numerics]
         has_any = any(split is not None and split[0] == QUANTITY for split in splits)
     else:
-        has_any = source == "estimate" or (isinstance(source, Mapping) and len(source) > 0)
+        has_any = len(source) > 0 if isinstance(source, Mapping) else source in ESTIMATES
     if has_any:
         # a body without joints may be attached with one
         world = spec.worldbody

@@ -3,6 +3,7 @@
 import manifold3d
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
 
 from buoyancy_mj.errors import MeshError
 
@@ -70,6 +71,15 @@ def compact(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Surface:
     """Drop the vertices that no face uses."""
     used, renumbered = np.unique(faces, return_inverse=True)
     return np.ascontiguousarray(vertices[used]), renumbered.reshape(-1, 3)
+
+
+def find_pieces(faces: NDArray[np.int64]) -> list[NDArray[np.intp]]:
+    """Vertices of each connected piece of a surface, the piece of the first vertex first."""
+    count = int(faces.max()) + 1
+    ends = faces.ravel(), np.roll(faces, 1, axis=1).ravel()
+    graph = sparse.csr_array((np.ones(faces.size), ends), shape=(count, count))
+    pieces, labels = sparse.csgraph.connected_components(graph, directed=False)
+    return [np.flatnonzero(labels == piece) for piece in range(pieces)]
 
 
 def tetrahedra(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -49,8 +49,10 @@ class Settings:
     """How the water slows bodies down; None for no damping."""
     added_mass: str | Mapping[str, ArrayLike] | None = "model"
     """Where added mass comes from. 'model' takes the numerics 'added_mass:BODY' of 6 or 36 numbers
-    from the model's `<custom>`. 'estimate' adds an estimate for bodies without. 'none' leaves it
-    out. Matrices (6, 6) or diagonals (6,) by the name of the body replace all these."""
+    from the model's `<custom>`. For bodies without, 'mesh' adds that of potential flow around their
+    meshes, 'ellipsoid' that of an ellipsoid like them, and 'estimate' takes 'mesh' where that can
+    be trusted and 'ellipsoid' elsewhere. 'none' leaves it out. Matrices (6, 6) or diagonals (6,)
+    by the name of the body replace all these."""
     slamming: bool = False
     """Whether the water keeps the momentum that added mass takes as a body enters. Without it half
     of that is given back at once, and energy is kept."""

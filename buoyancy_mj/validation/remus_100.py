@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import mujoco
 import numpy as np
 
-from buoyancy_mj.loads.added_mass import ellipsoid_added_mass
+from buoyancy_mj.potential.ellipsoid import ellipsoid_added_mass
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.validation.case import Case, Row
 from buoyancy_mj.validation.runs import build_body, follow, numeric
