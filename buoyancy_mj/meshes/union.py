@@ -11,7 +11,7 @@ from buoyancy_mj.meshes.surface import Surface, to_manifold
 
 FINE = 1e-4
 """What the union may lose of the detail of its surface, as a part of its longest side."""
-THIN = 0.01
+THIN = 0.003
 """The same at most, as a part of its mean thickness: twice its volume over its surface."""
 MANY = 8000
 """Triangles of a union that may lose more detail, by doublings of what it may lose."""
