@@ -87,7 +87,7 @@ def compute_added_mass(
         size = float(np.cbrt(union.volume))
         found = _converge((vertices - union.centroid) / size, faces, tell)
     except np.linalg.LinAlgError:
-        return _doubt("its surface crosses itself when it has fewer triangles")
+        return _doubt("the energy of a flow around it is not positive, as if it crossed itself")
 
     # with its own size, symmetries and place
     lengths = np.repeat([1.0, size], 3)
