@@ -135,7 +135,7 @@ def test_a_run_of_a_scene_books_the_energy_of_the_water_that_goes_along():
             "integrator": "RK4",
             "record_rate": 20.0,
             "damping": False,
-            "added_mass": "estimate",
+            "added_mass": "ellipsoid",
             "start": {"position": [0.0, 0.0, 0.1], "roll": 40.0},
         }
     )
