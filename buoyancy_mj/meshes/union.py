@@ -11,6 +11,8 @@ from buoyancy_mj.meshes.surface import Surface, to_manifold
 
 FINE = 1e-4
 """What the union may lose of the detail of its surface, as a part of its longest side."""
+KEPT = 0.99
+"""Part of its area that the union keeps at least, however thin its plates are."""
 ALIKE = 1e-3
 """Part of the volume that a body and its image may have apart and still count as symmetric."""
 
@@ -25,10 +27,20 @@ def unite(meshes: Sequence[TriMesh]) -> Surface | None:
     if len(manifolds) < len(solids):
         return None
     union = manifold3d.Manifold.batch_boolean(manifolds, manifold3d.OpType.Add)
-    x0, y0, z0, x1, y1, z1 = union.bounding_box()
-    mesh = union.simplify(FINE * max(x1 - x0, y1 - y0, z1 - z0)).to_mesh64()
+    mesh = _simplify(union).to_mesh64()
     vertices = np.array(mesh.vert_properties)[:, :3].copy()
     return vertices, np.asarray(mesh.tri_verts).astype(np.int64)
+
+
+def _simplify(union: manifold3d.Manifold) -> manifold3d.Manifold:
+    """A solid without needless triangles; plates that are thinner than `FINE` stay."""
+    x0, y0, z0, x1, y1, z1 = union.bounding_box()
+    fine, area = FINE * max(x1 - x0, y1 - y0, z1 - z0), union.surface_area()
+    for part in (1.0, 1e-2, 1e-4):
+        simple = union.simplify(part * fine)
+        if simple.surface_area() >= KEPT * area:
+            return simple
+    return union
 
 
 def find_symmetries(mesh: TriMesh) -> NDArray[np.float64]:
@@ -44,8 +56,9 @@ def find_symmetries(mesh: TriMesh) -> NDArray[np.float64]:
     vertices = vertices - mesh.centroid
     solid = to_manifold(vertices, faces)
     assert solid is not None
-    largest = [np.eye(3)]
-    for axes in (np.eye(3), _find_principal_axes(vertices, faces)):
+    largest, principal = [np.eye(3)], _find_principal_axes(vertices, faces)
+    along_frame = np.abs(principal).max(axis=0).min() > 1.0 - 1e-9
+    for axes in (np.eye(3),) if along_frame else (np.eye(3), principal):
         found = [
             one for one in _GENERATORS if _maps_to_itself(solid, vertices, axes @ one @ axes.T)
         ]
