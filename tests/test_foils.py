@@ -112,6 +112,16 @@ def test_sharp_edges_have_no_force_along_the_chord():
         assert lift * math.sin(a) - drag * math.cos(a) == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("aspect", [1e-3, 0.1, 0.2, 0.4])
+def test_a_foil_of_hardly_any_span_has_no_more_normal_force_than_a_plate_across_the_flow(aspect):
+    # Bollay (1939): 2 sin^2 a without any span
+    angles = np.radians(np.arange(0.0, 91.0))
+    fin = Foil(span=aspect, chord=1.0, drag=0.0)
+    lift, drag, _ = fin.coefficients(angles).T
+    normal = lift * np.cos(angles) + drag * np.sin(angles)
+    assert normal.max() == pytest.approx(1.18, abs=0.01)
+
+
 @given(foil=FOILS, angle=ANGLES)
 def test_drag_is_never_negative(foil, angle):
     assert foil.coefficients(angle)[0, 1] >= -1e-12
@@ -529,6 +539,16 @@ def test_all_copies_of_a_replicated_site_are_foils():
     assert len(find_foils(model)) == 4
 
 
+def test_a_text_for_one_copy_wins_over_the_one_for_all_copies():
+    model = mujoco.MjModel.from_xml_string("""
+      <mujoco><custom><text name="foil:fin2" data="walls=0"/><text name="foil:fin" data="walls=1"/>
+        </custom><worldbody><body name="b"><freejoint/><geom size=".1"/>
+        <replicate count="4" euler="90 0 0"><site name="fin" type="box" size=".05 .1 .004"
+          pos="0 .2 0"/></replicate></body></worldbody></mujoco>""")
+    walls = {foil.name: foil.foil.walls for foil in find_foils(model)}
+    assert walls == {"fin0": 1, "fin1": 1, "fin2": 0, "fin3": 1}
+
+
 def test_only_the_foils_of_the_bodies_in_this_water_act():
     body = """<body name="{0}" pos="0 {1} -5"><freejoint/><geom size=".1"/>
       <site name="{0}_wing" type="box" size=".05 .2 .004"/></body>"""
@@ -638,6 +658,19 @@ def test_a_name_that_a_geom_and_a_site_share_is_told():
         find_foils(model)
     assert str(error.value) == (
         "'foil:fin' may be for the geom 'fin' and for the site; rename one of them"
+    )
+
+
+def test_two_texts_for_one_foil_are_told():
+    model = mujoco.MjModel.from_xml_string("""
+      <mujoco><custom><text name="a/foil:fin" data="walls=1"/>
+        <text name="foil:a/fin" data="walls=0"/></custom><worldbody><body name="a/b"><freejoint/>
+        <geom size=".1"/><site name="a/fin" type="box" size=".05 .1 .004"/></body></worldbody>
+      </mujoco>""")
+    with pytest.raises(ModelError) as error:
+        find_foils(model)
+    assert str(error.value) == (
+        "'a/foil:fin' and 'foil:a/fin' both make 'a/fin' a foil; remove one of them"
     )
 
 
