@@ -93,11 +93,7 @@ def compute_added_mass(
         size = float(np.cbrt(union.volume))
         found = _converge((vertices - union.centroid) / size, faces, tell)
     except np.linalg.LinAlgError:
-<<<<<<< HEAD
-        return _doubt("the energy of a flow around it is not positive, as if it crossed itself")
-=======
         return _doubt("its surface crosses itself, or almost does, where it has few triangles")
->>>>>>> bi
 
     # with its own size, symmetries and place
     lengths = np.repeat([1.0, size], 3)
