@@ -298,6 +298,29 @@ def test_a_light_wing_is_slowed_down_and_not_turned_round_by_a_long_step(dof):
     assert np.linalg.norm(data.qvel) < 5.0
 
 
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
+@pytest.mark.parametrize("place", [-0.3, 0.0, 0.3])
+def test_a_wing_on_a_ball_never_gains_energy_however_long_the_step_is(integrator, place):
+    # of a ball MuJoCo's own terms of rotation add none
+    model = mujoco.MjModel.from_xml_string(f"""
+      <mujoco><option timestep="0.05" gravity="0 0 0" integrator="{integrator}"/>
+        <custom><text name="foil:wing" data="walls=0"/></custom>
+        <worldbody><body pos="0 0 -20"><freejoint/><geom type="sphere" size=".1" density="1000"/>
+          <site name="wing" type="box" size=".05 .5 .003" pos="{place} 0 0"/></body></worldbody>
+      </mujoco>""")
+    inertia = np.append([model.body_mass[1]] * 3, model.body_inertia[1])
+    random = np.random.default_rng(0)
+    for _ in range(4):
+        data = moving(model, random.normal(size=6) * np.repeat([1.0, 2.0], 3))
+        energies = []
+        with Buoyancy(model, damping=None).installed():
+            for _ in range(200):
+                mujoco.mj_step(model, data)
+                energies.append(0.5 * inertia @ data.qvel**2)
+        assert (np.diff(energies) <= 1e-9 * energies[0]).all()
+        assert energies[-1] < 0.5 * energies[0]
+
+
 def test_a_light_wing_that_spins_about_its_span_is_not_turned_round_by_a_long_step():
     model = vehicle("aspect=8", timestep=0.1, mass=0.1)
     model.opt.integrator = mujoco.mjtIntegrator.mjINT_EULER
