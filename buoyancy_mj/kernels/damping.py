@@ -16,8 +16,9 @@ from buoyancy_mj.kernels.rigid import (
     rigid_body,
     share,
 )
-from buoyancy_mj.kernels.vectors import difference, rotate, triple
+from buoyancy_mj.kernels.vectors import difference, triple
 from buoyancy_mj.kernels.waves import add_velocity
+from buoyancy_mj.kernels.wrenches import add_wrench
 
 HEAVE, ROLL, PITCH, WATERPLANE = range(4)
 """Columns of `DampingArrays.radiation`: force [N s/m] and torques [N m s] per velocity, and the
@@ -277,17 +278,3 @@ def _row(matrices, i, v):
     for j in range(6):
         total += _coefficient(matrices, i, j, v) * v[j]
     return total
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def add_wrench(r, at, com, f, out):
-    """Add a wrench along the axes r at a place to `out` (6,), about `com` in the world's axes."""
-    fx, fy, fz = rotate(r, f[0], f[1], f[2])
-    tx, ty, tz = rotate(r, f[3], f[4], f[5])
-    x, y, z = difference(at, com)
-    out[0] += fx
-    out[1] += fy
-    out[2] += fz
-    out[3] += tx + y * fz - z * fy
-    out[4] += ty + z * fx - x * fz
-    out[5] += tz + x * fy - y * fx

@@ -16,6 +16,7 @@ from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.polar import PLATE, PROFILE, SECTION, SLOPE, arm, coefficients
 from buoyancy_mj.kernels.vectors import difference, place, rotate, rotate_back, triple
 from buoyancy_mj.kernels.waves import add_velocity, tangent
+from buoyancy_mj.kernels.wrenches import add_wrench
 
 SPAN, CHORD, THICKNESS = range(3)
 """Columns of `Foils.sizes`: span, longest chord and thickness [m]."""
@@ -96,7 +97,7 @@ def add_foils(
             if wet > 0.0:
                 area = wet * chord * width
                 _add_strip(section, flow, along, chord, area, sea.density, timestep, wrench, steep)
-        _deliver(middle, r, xipos[b], wrench, out[b])
+        add_wrench(r, middle, xipos[b], wrench, out[b])
         _weigh_motion(middle, r, bodies.cvel[b], coms[roots[b]], flow, steep[0], motions[b])
 
         # how fast it slows its body down
@@ -277,17 +278,3 @@ def _add_strip(section, flow, along, chord, area, density, timestep, wrench, ste
     steepness[2] += (steep + pair) * along * along
     steepness[3] += steep * x
     steepness[4] += steep * x * x + brake
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _deliver(middle, r, com, wrench, out):
-    """Add a wrench in the axes of a foil to `out` (6,), about `com` in the world's axes."""
-    fx, fy, fz = rotate(r, wrench[0], wrench[1], wrench[2])
-    tx, ty, tz = rotate(r, wrench[3], wrench[4], wrench[5])
-    x, y, z = difference(middle, com)
-    out[0] += fx
-    out[1] += fy
-    out[2] += fz
-    out[3] += tx + y * fz - z * fy
-    out[4] += ty + z * fx - x * fz
-    out[5] += tz + x * fy - y * fx

@@ -11,12 +11,12 @@ from buoyancy_mj.kernels.damping import (
     PITCH,
     ROLL,
     WATERPLANE,
-    add_wrench,
     apparent_mass,
     relative_velocity,
 )
 from buoyancy_mj.kernels.rigid import rigid_body
 from buoyancy_mj.kernels.waves import add_velocity
+from buoyancy_mj.kernels.wrenches import add_wrench
 
 
 @njit(cache=True, error_model="numpy")

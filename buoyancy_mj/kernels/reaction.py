@@ -22,9 +22,10 @@ from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.inertia import set_to_body
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.spatial_inertia import find_hold, set_inertia
-from buoyancy_mj.kernels.vectors import difference, rotate, rotate_back, triple
+from buoyancy_mj.kernels.vectors import rotate_back, triple
 from buoyancy_mj.kernels.waves import add_motion
 from buoyancy_mj.kernels.wet_share import set_gradient, wet_share
+from buoyancy_mj.kernels.wrenches import add_wrench
 
 
 @njit(cache=True, error_model="numpy")
@@ -79,8 +80,8 @@ def add_reaction(
                 f[i] += held * change[i]
                 kept[i] *= held
             if keeps:
-                _deliver(bodies, b, kept, slamming[b])
-        _deliver(bodies, b, f, out[b])
+                add_wrench(r, place, bodies.xipos[b], kept, slamming[b])
+        add_wrench(r, place, bodies.xipos[b], f, out[b])
 
 
 @njit(cache=True, error_model="numpy")
@@ -129,21 +130,6 @@ def _set_change(share, growth, gradient, v, momentum, timestep, keeps, change, k
     for i in range(6):
         change[i] = factor * (lift * gradient[i] - growth * momentum[i])
         kept[i] = -lift * gradient[i] if keeps else 0.0
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _deliver(bodies, b, f, out):
-    """Add a wrench at a body's origin, along its axes, to `out` (6,): about `xipos`, world axes."""
-    r = bodies.xmat[b]
-    fx, fy, fz = rotate(r, f[0], f[1], f[2])
-    tx, ty, tz = rotate(r, f[3], f[4], f[5])
-    x, y, z = difference(bodies.xpos[b], bodies.xipos[b])
-    out[0] += fx
-    out[1] += fy
-    out[2] += fz
-    out[3] += tx + y * fz - z * fy
-    out[4] += ty + z * fx - x * fz
-    out[5] += tz + x * fy - y * fx
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -10,7 +10,7 @@ from numba import njit
 
 from buoyancy_mj.kernels.clip import CX, CY, CZ, VOLUME
 from buoyancy_mj.kernels.multibody import last_dof
-from buoyancy_mj.kernels.vectors import difference
+from buoyancy_mj.kernels.vectors import difference, rotate
 
 
 @njit(cache=True, error_model="numpy")
@@ -76,6 +76,20 @@ def add_wave_pressure(heads, wet, owners, frames, positions, specific_weight, xi
         if lift != 0.0:
             out[b, 3] -= (wet[h, CY] - xipos[b, 1]) * lift
             out[b, 4] += (wet[h, CX] - xipos[b, 0]) * lift
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def add_wrench(r, at, com, f, out):
+    """Add a wrench along the axes r at a place to `out` (6,), about `com` in the world's axes."""
+    fx, fy, fz = rotate(r, f[0], f[1], f[2])
+    tx, ty, tz = rotate(r, f[3], f[4], f[5])
+    x, y, z = difference(at, com)
+    out[0] += fx
+    out[1] += fy
+    out[2] += fz
+    out[3] += tx + y * fz - z * fy
+    out[4] += ty + z * fx - x * fz
+    out[5] += tz + x * fy - y * fx
 
 
 @njit(cache=True, error_model="numpy")
