@@ -660,6 +660,9 @@ BAD_MODELS = {
     "you mean 'foil:NAME'? possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, "
     "buoyancy_hull, foil:NAME, linear_damping:BODY, quadratic_damping:BODY, "
     "radiation_damping:BODY",
+    '<text name="foil" data="walls=1"/>': "the text 'foil' is none that water reads; did you mean "
+    "'foil:NAME'? possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, buoyancy_hull, "
+    "foil:NAME, linear_damping:BODY, quadratic_damping:BODY, radiation_damping:BODY",
     '<text name="foil_fin" data="walls=1"/>': "the text 'foil_fin' is none that water reads; did "
     "you mean 'foil:NAME'? possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, "
     "buoyancy_hull, foil:NAME, linear_damping:BODY, quadratic_damping:BODY, "

@@ -393,6 +393,17 @@ def test_slender_triangles_in_a_plane_are_turned_into_rounder_ones():
     assert smallest(bisection.surface[1]) >= smallest(faces) - 1e-9
 
 
+def test_a_union_keeps_what_is_thin_and_drops_what_is_fine():
+    wire, sheet = shapes.cylinder(0.001, 1.0), box(1.0, 1.0, 1e-5)
+    assert signed_volume(*unite([wire])) == pytest.approx(wire.volume, rel=1e-2)
+    assert signed_volume(*unite([sheet])) == pytest.approx(sheet.volume, rel=1e-6)
+    ring = trimesh.creation.torus(1.0, 0.3, major_sections=200, minor_sections=100)
+    vertices, faces = unite([as_mesh(ring)])
+    assert len(faces) <= 8000
+    check_closed(vertices, faces, signed_volume(vertices, faces))
+    assert signed_volume(vertices, faces) == pytest.approx(ring.volume, rel=5e-3)
+
+
 def test_a_decimated_surface_is_closed_and_near():
     ball = shapes.sphere(1.0)
     decimation = Decimation(ball.vertices, ball.faces)

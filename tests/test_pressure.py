@@ -214,6 +214,22 @@ def test_on_a_sphere_two_radii_deep_the_force_keeps_its_size_and_the_lift_is_ber
     assert mean[2] / BALL.volume - 1.0 == pytest.approx(lift, rel=0.03)
 
 
+@pytest.mark.parametrize(("kr", "kd"), [(0.5, 3.0), (1.0, 3.0), (0.5, 5.0), (1.0, 5.0), (2.0, 5.0)])
+def test_far_below_short_waves_size_and_lift_are_as_right_as_near_the_surface(kr, kd):
+    # the pressure over a node is coarse where waves have faded, but not beside what is left
+    wave = RegularWave(0.2 / kr, wavelength=2.0 * math.pi / kr)
+    times = np.linspace(0.0, wave.period, 16, endpoint=False)
+    water = Water(waves=wave)
+    forces = np.array([press(BALL, water, (0.0, 0.0, -kd / kr), time=t)[:3] for t in times])
+    mean = forces.mean(axis=0)
+    sizes = np.linalg.norm(forces - mean, axis=1)
+    assert sizes == pytest.approx([sizes.mean()] * 16, rel=0.01)
+    ball = 3.0 * (2.0 * kr * math.cosh(2.0 * kr) - math.sinh(2.0 * kr)) / (2.0 * kr) ** 3
+    lift = (0.2 * math.exp(-kd)) ** 2 * ball
+    assert mean[2] / BALL.volume - 1.0 == pytest.approx(lift, rel=0.03)
+    assert np.abs(mean[:2]).max() / BALL.volume < 0.01 * lift
+
+
 @pytest.mark.parametrize(
     ("period", "fraction"),
     # P14, IEA OES Task 10: sphere of 5 m, half in the water, Froude-Krylov heave force over

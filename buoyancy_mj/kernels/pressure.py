@@ -38,12 +38,13 @@ def typical(waves: NDArray[np.float64]) -> NDArray[np.float64]:
     It is as high as all at the surface, and its third derivatives are as large.
 
     At depths of 0, 1, 2, ... over the first of them: the pressure of short waves fades soonest.
+    Half of the fading counts, so that what is left out stays small beside the faded waves too.
     """
     square, k = waves[:, AMPLITUDE] ** 2, np.hypot(waves[:, KX], waves[:, KY])
     if not square.sum() > 0.0 or not k.any():
         return np.zeros(DEPTHS)
     bent = square / square.sum() * k**6
-    fades = np.exp(-2.0 * np.outer(np.arange(DEPTHS), k) / bent.sum() ** (1.0 / 6.0))
+    fades = np.exp(-np.outer(np.arange(DEPTHS), k) / bent.sum() ** (1.0 / 6.0))
     numbers: NDArray[np.float64] = (fades @ bent) ** (1.0 / 6.0)
     return numbers
 
@@ -97,9 +98,13 @@ def press_hulls(
             spread = tree.spread_in_box((e0, e1, e2), (h0, h1, h2), curvature)
             dry, wet = depth <= -spread, depth >= spread
 
-            # a small wet node, or the triangles of a leaf
-            deep = wet and dynamic
-            most = typical[int(min((depth - spread) * typical[0], DEPTHS - 1.0)) if deep else 0]
+            # a small wet node, or the triangles of a leaf; the choice is the same in crests and
+            # troughs, where its error would have a mean
+            most = typical[0]
+            if wet and dynamic:
+                rise = abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2
+                top = max(level - z - rise, 0.0)
+                most = typical[int(min(top * most, DEPTHS - 1.0))]
             small = wet and not dry and most * size <= SMALL and size > 0.0
             if small:
                 many = add_node(

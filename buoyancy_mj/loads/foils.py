@@ -49,7 +49,9 @@ class Foil:
         ModelError: a value out of its range, or an aspect ratio beside walls.
 
     Example:
-        >>> Foil(span=0.2, chord=0.1, walls=1).coefficients(np.radians([0.0, 5.0, 90.0]))
+        >>> lift, drag, moment = Foil(span=0.2, chord=0.1, walls=1).coefficients(np.radians(5.0))[0]
+        >>> float(lift)
+        0.338...
     """
 
     span: float | None = None
