@@ -309,6 +309,17 @@ def test_overlapping_meshes_have_the_added_mass_of_their_union():
     )
 
 
+@pytest.mark.usefixtures("coarse")
+@pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-6])
+def test_turned_boxes_that_touch_are_one_whatever_rounding_makes_of_it(gap):
+    turn = Rotation.from_rotvec(np.array([1.0, 2.0, 3.0]) / 14.0**0.5 * 0.7).as_matrix()
+    halves = [box(1.0, 1.0, 1.0), box(1.0, 1.0, 1.0, at=(1.0 + gap, 0.0, 0.0))]
+    found = compute_added_mass([half.transformed(turn, (0.0, 0.0, 0.0)) for half in halves])
+    whole = compute_added_mass([box(2.0, 1.0, 1.0, at=(0.5, 0.0, 0.0))]).matrix
+    assert not found.doubt
+    assert differ(found.matrix, turned(whole, turn), box(2.0, 1.0, 1.0)) < 0.02
+
+
 def test_a_union_keeps_plates_that_are_thinner_than_its_detail():
     ball, vane = shapes.sphere(0.1), box(1.0, 1.0, 2e-5, at=(2.0, 0.0, 0.0))
     vertices, faces = unite([ball, vane])

@@ -1,5 +1,6 @@
 """Added mass of a body in unbounded water, from its surface, and how far it can be trusted."""
 
+import contextlib
 import dataclasses
 import functools
 import time
@@ -40,6 +41,8 @@ few triangles across, as much again may be missing.
 """
 DISAGREEMENT = 0.01
 """Difference of two formulas for the same at most, as a part of both masses together."""
+WIDER = (1e-6, 1e-5)
+"""Parts of the longest side by which meshes are grown where faces that touch are not joined."""
 LONG = 2.0
 """Seconds after which whoever waits is told."""
 MANY = 10000
@@ -73,6 +76,35 @@ def compute_added_mass(
         meshes: closed meshes in one frame.
         tell: called once, if this takes long.
     """
+    tell = functools.cache(tell)
+    found: UnboundedAddedMass | None = None
+    for part in (0.0, *WIDER) if len(meshes) > 1 else (0.0,):
+        with contextlib.suppress(np.linalg.LinAlgError):
+            found = _compute(_widen(meshes, part) if part else meshes, tell)
+            break
+    if found is None:
+        return _doubt("its surface crosses itself, or almost does, where it has few triangles")
+    return found
+
+
+def _widen(meshes: Sequence[TriMesh], part: float) -> list[TriMesh]:
+    """Meshes grown about their centroids by a part of the longest side of all, to meet for sure."""
+    ends = np.array([mesh.bounds for mesh in meshes])
+    longest = float(np.max(ends[:, 1].max(axis=0) - ends[:, 0].min(axis=0)))
+    wider = []
+    for mesh in meshes:
+        factor = 1.0 + 2.0 * part * longest / float(np.linalg.norm(mesh.extents))
+        vertices = mesh.centroid + factor * (mesh.vertices - mesh.centroid)
+        wider.append(TriMesh(vertices, mesh.faces))
+    return wider
+
+
+def _compute(meshes: Sequence[TriMesh], tell: Callable[[], None]) -> UnboundedAddedMass:
+    """The added mass of the union of meshes.
+
+    Raises:
+        LinAlgError: two parts of its surface are in one place.
+    """
     surface = unite(meshes)
     if surface is None:
         return _doubt("more than two faces meet at an edge of its mesh")
@@ -83,17 +115,13 @@ def compute_added_mass(
         return UnboundedAddedMass(_move(ellipsoid.added_mass, union.centroid), 0.0, 0)
 
     # fewer triangles than it has, then more and more of them
-    tell = functools.cache(tell)
     if len(surface[1]) > MANY:
         tell()
     vertices, faces = _simplify(union)
     if len(faces) > GIVEN:
         return _doubt(f"its surface needs {len(faces)} triangles, and {GIVEN} are possible")
-    try:
-        size = float(np.cbrt(union.volume))
-        found = _converge((vertices - union.centroid) / size, faces, tell)
-    except np.linalg.LinAlgError:
-        return _doubt("its surface crosses itself, or almost does, where it has few triangles")
+    size = float(np.cbrt(union.volume))
+    found = _converge((vertices - union.centroid) / size, faces, tell)
 
     # with its own size, symmetries and place
     lengths = np.repeat([1.0, size], 3)

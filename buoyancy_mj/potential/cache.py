@@ -13,7 +13,7 @@ from buoyancy_mj.files import find_cache_folder, replace_file
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.potential.added_mass import UnboundedAddedMass, compute_added_mass
 
-VERSION = "1"
+VERSION = "2"
 """Of the method: what another one has computed is computed anew."""
 DIGITS = 9
 """Decimal digits of a coordinate that count, from the size of the shape on."""
