@@ -108,9 +108,9 @@ def find_cache_folder() -> Path | None:
     without a home, there is none.
     """
     chosen = os.environ.get("BUOYANCY_MJ_CACHE")
-    if chosen is not None:
-        return Path(chosen).absolute() if chosen else None
     try:
+        if chosen is not None:
+            return Path(chosen).expanduser().absolute() if chosen else None
         home = Path.home()
     except RuntimeError:
         return None

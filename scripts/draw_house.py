@@ -29,6 +29,8 @@ MARKS = ("<!-- written by scripts/draw_house.py -->\n", "<!-- end -->\n")
 """What stands before and after the table on the page."""
 WIDTH, HEIGHT, GAP = 12.0, 1.1, 0.72
 """Width of the picture, height of a room and distance between floors."""
+LEAST = 2.15
+"""Width of a room without lines, at which its name and their number stand side by side."""
 EVERYWHERE = {"errors", "files", "records", "values"}
 """Small rooms that serve any other, so that their streams would say nothing."""
 INK, WATER, BANK = "#12343b", "#2a8ca8", "#e9f4f5"
@@ -218,9 +220,12 @@ def _place(rooms: Sequence[Room], sources: Mapping[str, Sequence[str]]) -> dict[
 def _place_row(row: Sequence[Room], y: float) -> dict[str, Box]:
     """Rooms side by side, in the middle of the picture."""
     gap = 0.45 if len(row) < 4 else 0.2
+    free = WIDTH - gap * (len(row) + 1)
     lines = [room.lines / 1800.0 for room in row]
-    least = min(2.75, (WIDTH - sum(lines) - gap * (len(row) + 1)) / len(row))
-    widths = [least + more for more in lines]
+    # a large room leaves its neighbours the width of their names
+    share = min(1.0, (free - LEAST * len(row)) / sum(lines))
+    least = min(2.75, (free - share * sum(lines)) / len(row))
+    widths = [least + share * more for more in lines]
     x = 0.5 * (WIDTH - sum(widths) - gap * (len(row) - 1))
     boxes = {}
     for room, width in zip(row, widths, strict=True):

@@ -288,7 +288,8 @@ def foil_polar(angle, *, slope, camber, induced, crossflow, lost, stall, blend, 
 
 def _pressure_centre(sine, cosine, stalled, slope, crossflow, plate):
     """Where the force of a foil without camber acts, in chords before the middle."""
-    if sine == 0.0:
+    # below, products of numbers so small would be rounded to 0
+    if abs(sine) < 1e-300:
         return 0.25 * np.sign(cosine)
     parts = [
         ((1.0 - stalled) * slope * sine * cosine**2, 0.25 * np.sign(cosine)),

@@ -334,7 +334,7 @@ def test_acceleration_is_the_rate_of_the_velocity_of_the_water_as_it_moves():
                 RegularWave(2.0 * scale, period=3.0, depth=4.0),
             ]
         ).rows
-        deep = RegularWave(10.0 * scale, wavelength=2.0 * math.pi).rows
+        deep = Water(waves=RegularWave(10.0 * scale, wavelength=2.0 * math.pi)).rows
         for rows, point in (
             (waves, (0.3, 0.2, -0.1)),
             (waves, (0.3, 0.2, -0.5)),

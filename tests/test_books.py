@@ -179,7 +179,7 @@ def test_a_run_of_a_scene_books_the_energy_of_the_water_that_goes_along():
             "integrator": "RK4",
             "record_rate": 20.0,
             "damping": False,
-            "added_mass": "estimate",
+            "added_mass": "ellipsoid",
             "start": {"position": [0.0, 0.0, 0.1], "roll": 40.0},
         }
     )
@@ -298,6 +298,22 @@ def test_with_slamming_energy_only_falls():
     steps = np.diff(drift(BOX, 10.0, samples=500, slamming=True))
     assert steps.max() < 1e-7
     assert steps.sum() < -0.1
+
+
+def test_with_slamming_a_sphere_that_bobs_by_a_fifth_of_its_radius_loses_what_the_guide_says():
+    model = mujoco.MjModel.from_xml_string(f"""<mujoco>
+      <option integrator="RK4" timestep=".002"/><worldbody><body><freejoint/>
+      <geom size="{RADIUS}" density="500"/></body></worldbody></mujoco>""")
+    data = mujoco.MjData(model)
+    data.qpos[2] = 0.2 * RADIUS
+    heights = [data.qpos[2]]
+    water = Buoyancy(model, damping=None, added_mass="ellipsoid", slamming=True)
+    with water.installed():
+        while data.time < 1.2:
+            mujoco.mj_step(model, data)
+            heights.append(data.qpos[2])
+    crest = max(heights[len(heights) // 2 :])
+    assert crest / heights[0] == pytest.approx(0.94, abs=0.005)
 
 
 def test_slamming_is_a_load_of_its_own_that_pushes_up_while_the_body_enters():

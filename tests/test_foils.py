@@ -112,6 +112,16 @@ def test_sharp_edges_have_no_force_along_the_chord():
         assert lift * math.sin(a) - drag * math.cos(a) == pytest.approx(0.0, abs=1e-12)
 
 
+@pytest.mark.parametrize("aspect", [1e-3, 0.1, 0.2, 0.4])
+def test_a_foil_of_hardly_any_span_has_no_more_normal_force_than_a_plate_across_the_flow(aspect):
+    # Bollay (1939): 2 sin^2 a without any span
+    angles = np.radians(np.arange(0.0, 91.0))
+    fin = Foil(span=aspect, chord=1.0, drag=0.0)
+    lift, drag, _ = fin.coefficients(angles).T
+    normal = lift * np.cos(angles) + drag * np.sin(angles)
+    assert normal.max() == pytest.approx(1.18, abs=0.01)
+
+
 @given(foil=FOILS, angle=ANGLES)
 def test_drag_is_never_negative(foil, angle):
     assert foil.coefficients(angle)[0, 1] >= -1e-12
@@ -286,6 +296,29 @@ def test_a_light_wing_is_slowed_down_and_not_turned_round_by_a_long_step(dof):
         for _ in range(100):
             mujoco.mj_step(model, data)
     assert np.linalg.norm(data.qvel) < 5.0
+
+
+@pytest.mark.parametrize("integrator", ["Euler", "implicitfast", "RK4"])
+@pytest.mark.parametrize("place", [-0.3, 0.0, 0.3])
+def test_a_wing_on_a_ball_never_gains_energy_however_long_the_step_is(integrator, place):
+    # of a ball MuJoCo's own terms of rotation add none
+    model = mujoco.MjModel.from_xml_string(f"""
+      <mujoco><option timestep="0.05" gravity="0 0 0" integrator="{integrator}"/>
+        <custom><text name="foil:wing" data="walls=0"/></custom>
+        <worldbody><body pos="0 0 -20"><freejoint/><geom type="sphere" size=".1" density="1000"/>
+          <site name="wing" type="box" size=".05 .5 .003" pos="{place} 0 0"/></body></worldbody>
+      </mujoco>""")
+    inertia = np.append([model.body_mass[1]] * 3, model.body_inertia[1])
+    random = np.random.default_rng(0)
+    for _ in range(4):
+        data = moving(model, random.normal(size=6) * np.repeat([1.0, 2.0], 3))
+        energies = []
+        with Buoyancy(model, damping=None).installed():
+            for _ in range(200):
+                mujoco.mj_step(model, data)
+                energies.append(0.5 * inertia @ data.qvel**2)
+        assert (np.diff(energies) <= 1e-9 * energies[0]).all()
+        assert energies[-1] < 0.5 * energies[0]
 
 
 def test_a_light_wing_that_spins_about_its_span_is_not_turned_round_by_a_long_step():
@@ -529,6 +562,16 @@ def test_all_copies_of_a_replicated_site_are_foils():
     assert len(find_foils(model)) == 4
 
 
+def test_a_text_for_one_copy_wins_over_the_one_for_all_copies():
+    model = mujoco.MjModel.from_xml_string("""
+      <mujoco><custom><text name="foil:fin2" data="walls=0"/><text name="foil:fin" data="walls=1"/>
+        </custom><worldbody><body name="b"><freejoint/><geom size=".1"/>
+        <replicate count="4" euler="90 0 0"><site name="fin" type="box" size=".05 .1 .004"
+          pos="0 .2 0"/></replicate></body></worldbody></mujoco>""")
+    walls = {foil.name: foil.foil.walls for foil in find_foils(model)}
+    assert walls == {"fin0": 1, "fin1": 1, "fin2": 0, "fin3": 1}
+
+
 def test_only_the_foils_of_the_bodies_in_this_water_act():
     body = """<body name="{0}" pos="0 {1} -5"><freejoint/><geom size=".1"/>
       <site name="{0}_wing" type="box" size=".05 .2 .004"/></body>"""
@@ -617,6 +660,9 @@ BAD_MODELS = {
     "you mean 'foil:NAME'? possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, "
     "buoyancy_hull, foil:NAME, linear_damping:BODY, quadratic_damping:BODY, "
     "radiation_damping:BODY",
+    '<text name="foil" data="walls=1"/>': "the text 'foil' is none that water reads; did you mean "
+    "'foil:NAME'? possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, buoyancy_hull, "
+    "foil:NAME, linear_damping:BODY, quadratic_damping:BODY, radiation_damping:BODY",
     '<text name="foil_fin" data="walls=1"/>': "the text 'foil_fin' is none that water reads; did "
     "you mean 'foil:NAME'? possible: added_mass:BODY, buoyancy_fill, buoyancy_geoms, "
     "buoyancy_hull, foil:NAME, linear_damping:BODY, quadratic_damping:BODY, "
@@ -638,6 +684,19 @@ def test_a_name_that_a_geom_and_a_site_share_is_told():
         find_foils(model)
     assert str(error.value) == (
         "'foil:fin' may be for the geom 'fin' and for the site; rename one of them"
+    )
+
+
+def test_two_texts_for_one_foil_are_told():
+    model = mujoco.MjModel.from_xml_string("""
+      <mujoco><custom><text name="a/foil:fin" data="walls=1"/>
+        <text name="foil:a/fin" data="walls=0"/></custom><worldbody><body name="a/b"><freejoint/>
+        <geom size=".1"/><site name="a/fin" type="box" size=".05 .1 .004"/></body></worldbody>
+      </mujoco>""")
+    with pytest.raises(ModelError) as error:
+        find_foils(model)
+    assert str(error.value) == (
+        "'a/foil:fin' and 'foil:a/fin' both make 'a/fin' a foil; remove one of them"
     )
 
 

@@ -238,3 +238,13 @@ def test_without_matplotlib_the_mend_is_told(tmp_path):
         "need matplotlib, which is not installed: pip install 'buoyancy_mj[paper]'" in done.stderr
     )
     assert "Traceback" not in done.stderr
+
+
+def test_a_table_is_written_where_it_stands_and_one_of_others_is_not(tmp_path):
+    path, header = tmp_path / "volume.csv", ["dz [m]", "exact, error [%]"]
+    for row in (["0", "1"], ["0", "2"]):
+        reproduction._write_csv(path, header, [row])
+    assert read_table(path)[1] == [["0", "2"]]
+    with pytest.raises(FileExistsError, match="not made here"):
+        reproduction._write_csv(path, ["another"], [])
+    assert read_table(path)[1] == [["0", "2"]]

@@ -309,6 +309,18 @@ def test_overlapping_meshes_have_the_added_mass_of_their_union():
     )
 
 
+def test_a_union_keeps_plates_that_are_thinner_than_its_detail():
+    ball, vane = shapes.sphere(0.1), box(1.0, 1.0, 2e-5, at=(2.0, 0.0, 0.0))
+    vertices, faces = unite([ball, vane])
+    assert vertices[:, 0].max() == pytest.approx(2.5)
+    assert TriMesh(vertices, faces).volume == pytest.approx(ball.volume + vane.volume, rel=1e-3)
+
+
+def test_a_plate_that_is_too_thin_to_solve_is_told():
+    found = compute_added_mass([box(1.0, 1.0, 1e-6)])
+    assert found.doubt == "its surface crosses itself, or almost does, where it has few triangles"
+
+
 @pytest.mark.usefixtures("coarse")
 def test_two_balls_far_apart_carry_what_each_carries():
     balls = [shapes.sphere(0.5).transformed(np.eye(3), (0.0, y, 0.0)) for y in (-4.0, 4.0)]
@@ -368,6 +380,17 @@ def test_slender_triangles_in_a_plane_are_turned_into_rounder_ones():
         )
 
     assert smallest(bisection.surface[1]) >= smallest(faces) - 1e-9
+
+
+def test_a_union_keeps_what_is_thin_and_drops_what_is_fine():
+    wire, sheet = shapes.cylinder(0.001, 1.0), box(1.0, 1.0, 1e-5)
+    assert signed_volume(*unite([wire])) == pytest.approx(wire.volume, rel=1e-2)
+    assert signed_volume(*unite([sheet])) == pytest.approx(sheet.volume, rel=1e-6)
+    ring = trimesh.creation.torus(1.0, 0.3, major_sections=200, minor_sections=100)
+    vertices, faces = unite([as_mesh(ring)])
+    assert len(faces) <= 8000
+    check_closed(vertices, faces, signed_volume(vertices, faces))
+    assert signed_volume(vertices, faces) == pytest.approx(ring.volume, rel=5e-3)
 
 
 def test_a_decimated_surface_is_closed_and_near():
@@ -479,6 +502,21 @@ def test_what_takes_long_is_told_once(monkeypatch):
     assert told == [1]
 
 
+@pytest.mark.usefixtures("coarse")
+def test_a_surface_of_many_triangles_is_told_before_it_is_decimated(monkeypatch):
+    monkeypatch.setattr(added_mass, "MANY", 11)
+    told = []
+
+    def simplify(mesh):
+        assert told == [1]
+        return mesh.compact
+
+    monkeypatch.setattr(added_mass, "_simplify", simplify)
+    monkeypatch.setattr(added_mass, "LONG", 0.0)
+    compute_added_mass([box(1, 1, 1)], lambda: told.append(1))
+    assert told == [1]
+
+
 # what is kept
 
 
@@ -565,6 +603,9 @@ def test_the_folder_is_the_users(monkeypatch, tmp_path):
     assert find_cache_folder() == tmp_path / "Library" / "Caches" / "buoyancy_mj"
     # a relative one would be in the working folder
     monkeypatch.setattr("sys.platform", "linux")
+    monkeypatch.setenv("BUOYANCY_MJ_CACHE", "~/kept")
+    assert find_cache_folder() == tmp_path / "kept"
+    monkeypatch.delenv("BUOYANCY_MJ_CACHE")
     monkeypatch.setenv("XDG_CACHE_HOME", "caches")
     assert find_cache_folder() is None
 

@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from buoyancy_mj import DivergenceError, RecordingError, Simulation, read_scene
 from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.viz import blueprints
 from buoyancy_mj.viz import recording as recording_module
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.recording import Recording
@@ -459,3 +460,27 @@ def test_a_live_viewer_that_cannot_open_is_reported_and_leaves_nothing(tmp_path)
     assert "error: no Rerun viewer could be started" in done.stderr
     assert "Traceback" not in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+def test_foils_that_are_sites_are_in_it(tmp_path):
+    path = tmp_path / "run.rrd"
+    settings = [*SHORT, "vehicle=glider", "start.position.2=-2"]
+    recorded(path, "auv_drop_still", settings)
+    found = entities(rerun("print", "-vv", str(path)).stdout)
+    for name in ("hull", "wing_port", "wing_starboard", "fin"):
+        assert f"/world/bodies/glider/{name}" in found, name
+
+
+@pytest.mark.parametrize(("height", "aim"), [(-0.1, 0.0), (-5.0, -4.6)])
+def test_the_camera_looks_at_the_surface_or_at_a_vehicle_that_is_deep(
+    height, aim, tmp_path, monkeypatch
+):
+    seen = []
+
+    def run_blueprint(title, look_at, *others):
+        seen.append(look_at)
+        return blueprints.run_blueprint(title, look_at, *others)
+
+    monkeypatch.setattr(recording_module, "run_blueprint", run_blueprint)
+    recorded(tmp_path / "run.rrd", "auv_drop_still", [*SHORT, f"start.position.2={height}"])
+    assert seen[0][2] == pytest.approx(aim, abs=0.15)

@@ -192,7 +192,7 @@ def period_map(amplitude, pressure):
     """
     wave = RegularWave(amplitude, frequency=0.5)
     period, steps, state = wave.period, 100, at_rest()
-    for _ in range(2):
+    for _ in range(3):
         model = model_of(timestep=period / steps, integrator="implicitfast")
         water = Buoyancy(model, Water(waves=wave), pressure=pressure)
         with water.installed():

@@ -2,6 +2,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from buoyancy_mj.viz.visible_foils import find_visible_foils
 from buoyancy_mj.viz.visible_geoms import find_visible_geoms
 
 MODEL = """
@@ -76,3 +77,37 @@ def test_normals_point_outward():
     for name in ("hull", "mast"):
         shape = drawn()[1][name]
         assert (np.einsum("ij,ij->i", shape.normals, shape.vertices) > 0.0).all()
+
+
+# foils that are sites -----------------------------------------------------------------------------
+
+GLIDER = """
+<mujoco>
+  <custom>
+    <text name="foil:wing" data="span=2"/><text name="foil:fin" data="walls=1"/>
+    <text name="foil:hidden" data="walls=0"/><text name="foil:tail" data="walls=0"/>
+  </custom>
+  <worldbody>
+    <body name="glider" pos="0 0 -3" euler="0 0 90"><freejoint/>
+      <geom size=".2"/>
+      <geom name="tail" type="box" size=".1 .1 .01" pos="-.5 0 0"/>
+      <site name="wing" type="box" size=".1 .5 .01" pos=".2 0 0" rgba="1 0 0 1"/>
+      <site name="hidden" type="box" size=".1 .5 .01" group="4"/>
+      <site name="mark" type="box" size=".1 .5 .01"/>
+      <body pos="-.4 0 0"><site name="fin" type="ellipsoid" size=".1 .2 .01" euler="90 0 0"/></body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+
+
+def test_foils_that_are_sites_are_drawn_where_they_act_and_as_large():
+    model = mujoco.MjModel.from_xml_string(GLIDER)
+    drawn = {visible.foil.name: visible for visible in find_visible_foils(model)}
+    assert set(drawn) == {"wing", "fin"}
+    wing, fin = drawn["wing"], drawn["fin"]
+    assert wing.colour.tolist() == [255, 0, 0, 255]
+    assert np.ptp(wing.mesh.vertices, axis=0) == pytest.approx([0.2, 2.0, 0.02])
+    assert np.ptp(fin.mesh.vertices, axis=0) == pytest.approx([0.2, 0.4, 0.02], rel=0.01)
+    assert wing.foil.middle == pytest.approx([0.2, 0.0, 0.0])
+    assert (fin.foil.body, fin.foil.middle) == (1, pytest.approx([-0.4, 0.0, 0.0]))

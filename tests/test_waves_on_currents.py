@@ -66,6 +66,24 @@ def test_currents_block_waves_where_theory_says():
         wavenumber(0.01, depth=0.1, current=-1.0)
 
 
+BAD_WAVENUMBERS = [
+    ({"omega": math.nan}, "omega is nan; it must be a finite number"),
+    ({"omega": 0.0}, "omega is 0.0; it must be at least 1e-06 and at most 1e+07"),
+    ({"omega": "1"}, "omega is '1'; it must be a finite number"),
+    ({"depth": -1.0}, "wave depth is -1.0; it must be at least 1e-06 m (inf is deep water)"),
+    ({"gravity": 0.0}, "gravity is 0.0; it must be at least 1e-06 and at most 1e+12"),
+    ({"current": math.nan}, "current is nan; it must be a finite number"),
+    ({"current": -math.inf}, "current is -inf; it must be a finite number"),
+]
+
+
+@pytest.mark.parametrize(("given", "message"), BAD_WAVENUMBERS)
+def test_a_wavenumber_of_numbers_that_no_wave_has_is_refused(given, message):
+    with pytest.raises(WaterError) as error:
+        wavenumber(**({"omega": 1.0} | given))
+    assert str(error.value) == message
+
+
 @given(st.floats(0.1, 8.0), st.floats(0.05, 100.0), st.floats(-2.0, 3.0))
 def test_the_wavenumber_is_the_least_that_solves_the_relation(omega, depth, current):
     try:

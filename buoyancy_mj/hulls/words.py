@@ -184,13 +184,15 @@ def _find_near_keyword(name: str) -> str:
     """The keyword that a part of a name nearly is; '' if there is none.
 
     Of 'QUANTITY:BODY' the quantity counts. A quantity without a body counts if it is the whole name
-    behind slashes.
+    behind slashes, and so does 'foil' without a name.
     """
     before, colon, _ = name.rpartition(":")
     before = before or name
     whole = name.rpartition("/")[2]
     if not colon and whole in QUANTITIES:
         return f"{whole}:BODY"
+    if not colon and whole == FOIL:
+        return f"{FOIL}:NAME"
     if colon and _likeness(before, FOIL) >= _ALIKE_FOIL:
         return f"{FOIL}:NAME"
     keywords = QUANTITIES if colon else tuple(CUSTOM_TEXTS.values())

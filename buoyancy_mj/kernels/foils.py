@@ -68,6 +68,7 @@ def add_foils(
     mobility, rows = np.empty((6, 6)), np.empty((6, joints.qvel.shape[0]))
     steepness = np.zeros((foils.bodies.shape[0], 5))
     body_rates, tree_rates = np.zeros(out.shape[0]), np.zeros(out.shape[0])
+    motions = np.zeros((out.shape[0], 4))
     sizes, sections, strips, starts = foils.sizes, foils.sections, foils.strips, foils.starts
     owners, roots, xipos, coms = foils.bodies, bodies.body_rootid, bodies.xipos, bodies.subtree_com
     last = -1
@@ -96,6 +97,7 @@ def add_foils(
                 area = wet * chord * width
                 _add_strip(section, flow, along, chord, area, sea.density, timestep, wrench, steep)
         _deliver(middle, r, xipos[b], wrench, out[b])
+        _weigh_motion(middle, r, bodies.cvel[b], coms[roots[b]], flow, steep[0], motions[b])
 
         # how fast it slows its body down
         if b != last:
@@ -113,12 +115,13 @@ def add_foils(
         if body_rates[b] > 0.0 and tree_rate * timestep > 1.0:
             # each body has its share of the rate that all may have
             held = holding.excess(tree_rate * timestep) / body_rates[b]
+            step = timestep * tree_rate / body_rates[b]
             holding.set_mobility(joints, mass_matrix, b, rows, mobility)
-            _hold(foils, bodies, b, steepness, held, mobility, push, r, out[b])
+            _hold(foils, bodies, b, steepness, motions[b], held, step, mobility, push, r, out[b])
 
 
 @njit(cache=True, error_model="numpy")
-def _hold(foils, bodies, b, steepness, time, mobility, push, r, out):
+def _hold(foils, bodies, b, steepness, motion, time, step, mobility, push, r, out):
     """Hold the wrench `out` (6,) of the foils of one body, see `holding.hold`."""
     damping = np.zeros((6, 6))
     com = bodies.subtree_com[bodies.body_rootid[b]]
@@ -131,7 +134,24 @@ def _hold(foils, bodies, b, steepness, time, mobility, push, r, out):
             for i in range(6):
                 for j in range(6):
                     damping[i, j] += weight * push[i] * push[j]
-    holding.hold(damping, mobility, time, bodies.xipos[b], com, out)
+    # its rotation, and the velocity through the water of what moves along at the centre of mass
+    for i in range(3):
+        push[i], push[3 + i] = bodies.cvel[b, i], motion[1 + i] / motion[0]
+    holding.hold(damping, mobility, push, time, step, bodies.xipos[b], com, out)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _weigh_motion(middle, r, cvel, com, flow, weight, out):
+    """Add a weight, and that times the velocity (3,) at a centre of mass, to `out` (4,).
+
+    The velocity is that relative to the water around a foil.
+    """
+    vx, vy, vz = rotate(r, flow[0], flow[1], flow[2])
+    x, y, z = difference(middle, com)
+    out[0] += weight
+    out[1] += weight * (vx - cvel[1] * z + cvel[2] * y)
+    out[2] += weight * (vy - cvel[2] * x + cvel[0] * z)
+    out[3] += weight * (vz - cvel[0] * y + cvel[1] * x)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

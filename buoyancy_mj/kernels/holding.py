@@ -74,13 +74,27 @@ def excess(stiffness):
 
 
 @njit(cache=True, error_model="numpy")
-def hold(damping, mobility, time, xipos, com, out):
+def hold(damping, mobility, velocity, time, step, xipos, com, out):
     """Hold the wrench `out` (6,), force and torque about `xipos`, below a rate.
 
     It becomes (1 + X) / (1 + X + X^2) of it, with X the `time` times D L. So fast motions lose most
     of their force, and slow ones what is of second order. With `excess` over the sum of all rates
     as the time, no motion is slowed down at more than one over the timestep: the held rate grows
     with the rate, and that of a motion that has all of the sum is one over the timestep.
+
+    D knows the forces along the normal. Lift also pushes and turns foils within their planes, with
+    what it takes from the motion along the normal; where that is held, this is held too: within a
+    `step` the wrench adds no more energy than it would have added as it was.
+
+    Args:
+        damping: D (6, 6).
+        mobility: L (6, 6).
+        velocity: of the body through the water (6,), rotation first.
+        time: see above [s].
+        step: the timestep over the body's share of all rates [s].
+        xipos: where the wrench acts.
+        com: the centre of mass of the tree.
+        out: the wrench.
     """
     # torques about the centre of mass of the tree
     x, y, z = difference(xipos, com)
@@ -90,27 +104,73 @@ def hold(damping, mobility, time, xipos, com, out):
     w[1] = out[4] + z * out[0] - x * out[2]
     w[2] = out[5] + x * out[1] - y * out[0]
 
-    # X, then the two sides
-    rates, a = np.empty((6, 6)), np.empty((6, 6))
+    # X
+    rates = np.empty((6, 6))
     for i in range(6):
-        v[i] = w[i]
         for j in range(6):
             rates[i, j] = 0.0
             for k in range(6):
                 rates[i, j] += time * damping[i, k] * mobility[k, j]
-            v[i] += rates[i, j] * w[j]
-    for i in range(6):
-        for j in range(6):
-            a[i, j] = rates[i, j] + (1.0 if i == j else 0.0)
-            for k in range(6):
-                a[i, j] += rates[i, k] * rates[k, j]
-    _solve(a, v)
+    _slow_down(rates, w, v)
+    _take_back(damping, mobility, rates, velocity, 0.5 * step, w, v)
 
     # and back
     out[0], out[1], out[2] = v[3], v[4], v[5]
     out[3] = v[0] - y * out[2] + z * out[1]
     out[4] = v[1] - z * out[0] + x * out[2]
     out[5] = v[2] - x * out[1] + y * out[0]
+
+
+@njit(cache=True, error_model="numpy")
+def _slow_down(rates, wrench, out):
+    """Write (1 + X) / (1 + X + X^2) of a wrench (6,) to `out` (6,), with X the `rates` (6, 6)."""
+    a = np.empty((6, 6))
+    for i in range(6):
+        out[i] = wrench[i]
+        for j in range(6):
+            out[i] += rates[i, j] * wrench[j]
+            a[i, j] = rates[i, j] + (1.0 if i == j else 0.0)
+            for k in range(6):
+                a[i, j] += rates[i, k] * rates[k, j]
+    _solve(a, out)
+
+
+@njit(cache=True, error_model="numpy")
+def _take_back(damping, mobility, rates, velocity, half, wrench, out):
+    """Draw the held wrench `out` (6,) towards plain damping until it adds no energy.
+
+    A wrench w adds w^T v + half w^T L w within a step, over the timestep. Plain damping is -D v,
+    held as well, which never adds any. `wrench` is what it was, and is worked in.
+    """
+    power, limit = 0.0, 0.0
+    for i in range(6):
+        power += out[i] * velocity[i]
+        limit += wrench[i] * velocity[i]
+    gain = power - max(limit, 0.0) + half * quadratic(mobility, out)
+    if not gain > 0.0:
+        return
+
+    # the way to plain damping
+    way = np.empty(6)
+    for i in range(6):
+        wrench[i] = 0.0
+        for j in range(6):
+            wrench[i] -= damping[i, j] * velocity[j]
+    _slow_down(rates, wrench, way)
+    slope = 0.0
+    for i in range(6):
+        way[i] -= out[i]
+        slope += way[i] * velocity[i]
+    for i in range(6):
+        for j in range(6):
+            slope += 2.0 * half * out[i] * mobility[i, j] * way[j]
+    bend = half * quadratic(mobility, way)
+
+    # where on it nothing is added: the lesser root of gain + slope t + bend t^2
+    root = math.sqrt(max(slope * slope - 4.0 * bend * gain, 0.0))
+    t = min(2.0 * gain / max(root - slope, 2.0 * gain), 1.0)
+    for i in range(6):
+        out[i] += t * way[i]
 
 
 @njit(cache=True, error_model="numpy")

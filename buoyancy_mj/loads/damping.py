@@ -32,7 +32,7 @@ class Silhouette:
       Fundamentals of Fluid Mechanics, 6th ed., fig. 9.20).
     - Friction: `friction` times the area of the sides over A.
 
-    C is 1.04 for a cube face-on, 0.52 for a sphere, 0.21 for an ellipsoid four times as long as
+    C is 1.04 for a cube face-on, 0.52 for a sphere, 0.20 for an ellipsoid four times as long as
     wide and 0.98 for a cylinder as long. Measured were 1.05 to 1.07, 0.47, 0.25 and 0.87 (White,
     Fluid Mechanics, 8th ed., table 7.3, after Hoerner, Fluid-Dynamic Drag, 1965, ch. 3).
 

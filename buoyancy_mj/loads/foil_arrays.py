@@ -113,7 +113,7 @@ def find_foils(
     mujoco.mj_kinematics(model, data)
     targets = _list_targets(model)
     copies = find_originals(targets)
-    found: dict[str, tuple[str, PlacedFoil]] = {}
+    found: dict[str, tuple[FoilText, PlacedFoil]] = {}
     # a text for one copy wins over the one for all copies
     for text in sorted(texts, key=lambda one: one.target in targets):
         names = [name for name in targets if text.target in copies.get(name, ())]
@@ -124,7 +124,7 @@ def find_foils(
             raise _refuse_missing(model, text, targets)
         foil = parse_foil(text.text, f"the text '{text.name}'")
         for name in names:
-            found[name] = (text.name, _place(model, data, text, name, targets[name], foil))
+            found[name] = (text, _place(model, data, text, name, targets[name], foil))
     placed = (foil for _, foil in found.values())
     return tuple(foil for foil in placed if bodies is None or foil.body in bodies)
 
@@ -154,11 +154,12 @@ def _list_targets(model: mujoco.MjModel) -> dict[str, list[tuple[str, int]]]:
     return targets
 
 
-def _check_single(text: FoilText, other: tuple[str, PlacedFoil] | None) -> None:
-    """Refuse a foil that two texts state."""
-    if other is not None and other[0] != text.name and text.target == other[1].name:
+def _check_single(text: FoilText, other: tuple[FoilText, PlacedFoil] | None) -> None:
+    """Refuse a foil that two texts state; one for all copies may stand beside it."""
+    if other is not None and other[0].target == text.target:
         raise ModelError(
-            f"'{other[0]}' and '{text.name}' both make '{text.target}' a foil; remove one of them"
+            f"'{other[0].name}' and '{text.name}' both make '{text.target}' a foil; "
+            "remove one of them"
         )
 
 

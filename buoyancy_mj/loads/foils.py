@@ -17,6 +17,9 @@ the 15 of a NACA 0015 at Reynolds numbers of 0.16 and 1 million (Sheldahl and Kl
 LATEST_STALL = 40.0
 """Greatest angle of stall that is taken without being stated [degrees]; foils of aspect ratio 1 and
 less stall about there (Hoerner and Borst 1975, *Fluid-Dynamic Lift*, ch. 17)."""
+MOST_CROSSFLOW = 2.0
+"""Normal force of cross-flow over sin^2 a at most: that of a plate of no span at all (Bollay 1939,
+ZAMM 19, 21)."""
 _STALL_WIDTH = 0.3
 """Half the width over which the flow parts, as a part of the angle of stall."""
 _BOUNDS = {
@@ -46,7 +49,9 @@ class Foil:
         ModelError: a value out of its range, or an aspect ratio beside walls.
 
     Example:
-        >>> Foil(span=0.2, chord=0.1, walls=1).coefficients(np.radians([0.0, 5.0, 90.0]))
+        >>> lift, drag, moment = Foil(span=0.2, chord=0.1, walls=1).coefficients(np.radians(5.0))[0]
+        >>> float(lift)
+        0.338...
     """
 
     span: float | None = None
@@ -74,7 +79,7 @@ class Foil:
     """Oswald's e in the drag that lift induces, C_L^2 / (pi e AR)."""
     crossflow: float = 0.8
     """Hoerner's cross-flow coefficient, C_D / AR sin^2 a along the normal: 0.8 for the square tips
-    of Whicker and Fehlner's rudders."""
+    of Whicker and Fehlner's rudders. Over the aspect ratio it is `MOST_CROSSFLOW` at most."""
     suction: float = 1.0
     """How much of the leading edge's suction there is: 1 for round edges, 0 for the sharp ones of a
     flat plate."""
@@ -121,7 +126,7 @@ class Foil:
         row[polar.SLOPE] = slope
         row[polar.CAMBER] = math.sin(math.radians(self.zero_lift))
         row[polar.INDUCED] = inverse / (math.pi * self.efficiency)
-        row[polar.CROSSFLOW] = self.crossflow * inverse
+        row[polar.CROSSFLOW] = min(self.crossflow * inverse, MOST_CROSSFLOW)
         row[polar.LOST] = 1.0 - self.suction
         row[polar.STALL] = math.radians(stall)
         row[polar.BLEND] = _STALL_WIDTH * math.radians(stall)

@@ -11,6 +11,12 @@ from buoyancy_mj.meshes.surface import Surface, to_manifold
 
 FINE = 1e-4
 """What the union may lose of the detail of its surface, as a part of its longest side."""
+THIN = 0.003
+"""The same at most, as a part of its mean thickness: twice its volume over its surface."""
+MANY = 8000
+"""Triangles of a union that may lose more detail, by doublings of what it may lose."""
+LOSS = 0.005
+"""Part of its volume that it may lose by that."""
 ALIKE = 1e-3
 """Part of the volume that a body and its image may have apart and still count as symmetric."""
 
@@ -25,10 +31,26 @@ def unite(meshes: Sequence[TriMesh]) -> Surface | None:
     if len(manifolds) < len(solids):
         return None
     union = manifold3d.Manifold.batch_boolean(manifolds, manifold3d.OpType.Add)
-    x0, y0, z0, x1, y1, z1 = union.bounding_box()
-    mesh = union.simplify(FINE * max(x1 - x0, y1 - y0, z1 - z0)).to_mesh64()
+    mesh = _drop_detail(union).to_mesh64()
     vertices = np.array(mesh.vert_properties)[:, :3].copy()
     return vertices, np.asarray(mesh.tri_verts).astype(np.int64)
+
+
+def _drop_detail(solid: manifold3d.Manifold) -> manifold3d.Manifold:
+    """A solid without triangles that say little, and with more loss if there are too many."""
+    x0, y0, z0, x1, y1, z1 = solid.bounding_box()
+    thickness = 2.0 * solid.volume() / solid.surface_area()
+    tolerance = min(FINE * max(x1 - x0, y1 - y0, z1 - z0), THIN * thickness)
+    simple = solid.simplify(tolerance)
+    for _ in range(6):
+        if simple.num_tri() <= MANY:
+            break
+        tolerance *= 2.0
+        simpler = solid.simplify(tolerance)
+        if abs(simpler.volume() / solid.volume() - 1.0) > LOSS:
+            break
+        simple = simpler
+    return simple
 
 
 def find_symmetries(mesh: TriMesh) -> NDArray[np.float64]:

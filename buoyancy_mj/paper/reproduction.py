@@ -1,6 +1,7 @@
 """The reproduction as a whole: run the studies, and write their tables, figures and page."""
 
 import csv
+import io
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
@@ -86,8 +87,13 @@ def _format_rows(table: Table) -> Iterable[tuple[str, ...]]:
 
 def _write_csv(path: Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """Write a table; one of the same columns that is there is replaced."""
-    require_own(path, ",".join(header))
-    with replace_file(path) as part, part.open("w", newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(rows)
+    require_own(path, _format_csv([header]))
+    with replace_file(path) as part:
+        part.write_text(_format_csv([header, *rows]))
+
+
+def _format_csv(rows: Iterable[Sequence[str]]) -> str:
+    """Rows as comma-separated values."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()

@@ -1,6 +1,7 @@
 """Added mass of a body in unbounded water, from its surface, and how far it can be trusted."""
 
 import dataclasses
+import functools
 import time
 from collections.abc import Callable, Iterator, Sequence
 
@@ -41,6 +42,8 @@ DISAGREEMENT = 0.01
 """Difference of two formulas for the same at most, as a part of both masses together."""
 LONG = 2.0
 """Seconds after which whoever waits is told."""
+MANY = 10000
+"""Triangles of the surface beyond which whoever waits is told at once."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -80,6 +83,9 @@ def compute_added_mass(
         return UnboundedAddedMass(_move(ellipsoid.added_mass, union.centroid), 0.0, 0)
 
     # fewer triangles than it has, then more and more of them
+    tell = functools.cache(tell)
+    if len(surface[1]) > MANY:
+        tell()
     vertices, faces = _simplify(union)
     if len(faces) > GIVEN:
         return _doubt(f"its surface needs {len(faces)} triangles, and {GIVEN} are possible")
@@ -87,7 +93,7 @@ def compute_added_mass(
         size = float(np.cbrt(union.volume))
         found = _converge((vertices - union.centroid) / size, faces, tell)
     except np.linalg.LinAlgError:
-        return _doubt("its surface crosses itself when it has fewer triangles")
+        return _doubt("its surface crosses itself, or almost does, where it has few triangles")
 
     # with its own size, symmetries and place
     lengths = np.repeat([1.0, size], 3)

@@ -18,7 +18,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import linalg, sparse
+from scipy import sparse
 
 from buoyancy_mj.kernels.galerkin import Layers, Panels, Rule, Rules, sum_layers
 from buoyancy_mj.meshes.surface import find_pieces
@@ -60,20 +60,23 @@ def solve(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Solution:
     for piece in find_pieces(faces):
         operator[np.ix_(piece, piece)] += scale / len(piece)
 
-    # the right-hand sides and the six potentials
+    # the right-hand sides and the six potentials; LU, since the threads of a Cholesky factorization
+    # wait for each other without end where other processes are busy
     weights = _weigh_motions(panels, vertices, n)
-    sides = 0.5 * weights + layers.double
-    factor = linalg.cho_factor(operator, check_finite=False)
-    potentials = linalg.cho_solve(factor, sides, check_finite=False)
-    matrix = layers.power + sides.T @ potentials
+    sides, normal = 0.5 * weights + layers.double, weights[:, :3]
+    potentials, dipoles = np.split(np.linalg.solve(operator, np.hstack([sides, normal])), [6], 1)
+    energies = sides.T @ potentials, normal.T @ dipoles
+    for energy in energies:
+        eigenvalues = np.linalg.eigvalsh(energy + energy.T)
+        if eigenvalues[0] < -1e-9 * eigenvalues[-1]:
+            raise np.linalg.LinAlgError("the energy of a flow is negative")
+    matrix = layers.power + energies[0]
 
     # by the other formula
-    normal = weights[:, :3]
-    dipoles = linalg.cho_solve(factor, normal, check_finite=False)
     volume = float(np.einsum("ni,ni->", vertices, normal)) / 3.0
     return Solution(
         matrix=0.5 * (matrix + matrix.T),
-        translation=normal.T @ dipoles - volume * np.eye(3),
+        translation=energies[1] - volume * np.eye(3),
         curls=np.einsum("tkx,tkj->tjx", curls_of_hats, potentials[faces]),
     )
 

@@ -8,7 +8,8 @@ from scipy.optimize import brentq, minimize_scalar
 
 from buoyancy_mj.errors import WaterError, choices, describe
 from buoyancy_mj.sea.currents import Current, current_rows, effective_current
-from buoyancy_mj.sea.ranges import SHORTEST
+from buoyancy_mj.sea.ranges import LARGEST, SHORTEST, SMALLEST, STRONGEST, read_depth
+from buoyancy_mj.values import read_number
 
 GRAVITY = 9.81
 """Default acceleration of gravity [m/s^2], the same as MuJoCo's."""
@@ -44,7 +45,7 @@ def wavenumber(
         current: speed of the current along the wave, U [m/s]; negative against it.
 
     Raises:
-        WaterError: the current blocks the wave.
+        WaterError: a value out of its range, or a current that blocks the wave.
 
     Example:
         >>> wavenumber(0.785, depth=10.0)
@@ -52,6 +53,12 @@ def wavenumber(
         >>> wavenumber(0.785, depth=10.0, current=-1.0)
         0.1036...
     """
+    # values in their ranges: frequencies and periods of waves lie from `SMALLEST` to `LARGEST`
+    omega = read_number(WaterError, "omega", omega, least=SMALLEST, most=10.0 * LARGEST)
+    depth = read_depth(depth)
+    gravity = read_number(WaterError, "gravity", gravity, least=SMALLEST, most=STRONGEST)
+    current = read_number(WaterError, "current", current, least=-LARGEST, most=LARGEST)
+
     if current == 0.0:
         return _wavenumber_in_still_water(omega, depth, gravity)
     dispersion = Dispersion((current, 0.0, 0.0), depth, gravity, (omega, omega))

@@ -184,6 +184,7 @@ CASES = (
         "A body with a wing of that polar slides ahead and down at the pitch of the formula, from "
         "rest, for 40 s. It is heavier than its water by the net mass.",
         _glide,
+        loads=("buoyancy", "foil"),
     ),
 )
 """In the order of the page."""

@@ -9,6 +9,7 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
 from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 
 WET = np.array([25, 90, 190])
@@ -31,9 +32,10 @@ class BodyDrawing:
         self._size = size
         self._geoms = list(find_visible_geoms(simulation.model))
         self._moving = [geom for geom in self._geoms if geom.moves]
+        self._foils = list(find_visible_foils(simulation.model))
 
     def draw_static(self, log: Log) -> None:
-        """Draw the meshes of all geoms in the frames of their bodies."""
+        """Draw all geoms, and foils that are sites, in the frames of their bodies."""
         for geom in self._geoms:
             entity = self._geom_entity(geom)
             mesh = rr.Mesh3D(
@@ -46,16 +48,33 @@ class BodyDrawing:
             log(entity, pose, static=True)
             if not geom.moves:
                 log(entity, rr.Mesh3D.from_fields(albedo_factor=geom.colour), static=True)
+        for visible in self._foils:
+            self._draw_foil(log, visible)
 
     def draw(self, log: Log, frame: Frame) -> None:
         """Draw one frame: the poses of bodies, what of them is wet, and the waterline."""
         data = frame.data
-        for body in sorted({geom.body for geom in self._moving}):
+        bodies = {geom.body for geom in self._moving} | {one.foil.body for one in self._foils}
+        for body in sorted(bodies):
             rotation = data.xmat[body].reshape(3, 3)
             pose = rr.Transform3D(translation=data.xpos[body], mat3x3=rotation)
             log(self._body_entity(body), pose)
         self._draw_wetness(log, frame)
         self._draw_waterline(log, frame)
+
+    def _draw_foil(self, log: Log, visible: VisibleFoil) -> None:
+        """Draw a foil that is a site in the frame of its body."""
+        foil, mesh = visible.foil, visible.mesh
+        entity = f"{self._body_entity(foil.body)}/{rr.escape_entity_path_part(foil.name)}"
+        plate = rr.Mesh3D(
+            vertex_positions=mesh.vertices,
+            triangle_indices=mesh.faces,
+            vertex_normals=mesh.normals,
+            albedo_factor=visible.colour,
+        )
+        log(entity, plate, static=True)
+        pose = rr.Transform3D(translation=foil.middle, mat3x3=foil.body_from_foil)
+        log(entity, pose, static=True)
 
     def _draw_wetness(self, log: Log, frame: Frame) -> None:
         """Colour the geoms of which other vertices are wet than in the last frame."""

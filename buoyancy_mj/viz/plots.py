@@ -22,7 +22,7 @@ COLOURS: Mapping[str, Colour] = {
     "radiation": (240, 150, 200),
     "foil": (150, 210, 70),
     "added_mass": (170, 120, 230),
-    "slamming": (190, 230, 90),
+    "slamming": (250, 245, 150),
 }
 """Colours of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)

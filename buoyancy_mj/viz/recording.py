@@ -152,7 +152,10 @@ class Recording:
         scene = self.simulation.scene
         vehicles = self.simulation.vehicles.values()
         middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
-        look_at = np.array([*middle[:2], scene.water.level])
+        # at the surface over the vehicles, or under it where they are deep
+        reach = 0.5 * self._size
+        height = np.clip(scene.water.level, middle[2] - reach, middle[2] + reach)
+        look_at = np.array([*middle[:2], height])
         # vehicles apart from each other fill less of the picture than one
         size = CLOSER * self._size if self._several else self._size
         layout = run_blueprint(scene.title, look_at, size, self._several)

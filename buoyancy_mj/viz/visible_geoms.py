@@ -58,7 +58,7 @@ def find_visible_geoms(model: mujoco.MjModel) -> Iterator[VisibleGeom]:
     for geom in map(int, geoms if len(geoms) else range(model.ngeom)):
         body = int(model.geom_bodyid[geom])
         moves = bool(can_move[body])
-        rgba = _colour(model, geom)
+        rgba = choose_colour(model, model.geom_rgba[geom], model.geom_matid[geom])
         mesh = _mesh(model, geom, fine=moves)
         if mesh is None or rgba[3] == 0.0:
             continue
@@ -78,10 +78,16 @@ def find_visible_geoms(model: mujoco.MjModel) -> Iterator[VisibleGeom]:
         )
 
 
-def _colour(model: mujoco.MjModel, geom: int) -> NDArray[np.float32]:
-    """Red, green, blue, alpha (4,) from 0 to 1, as MuJoCo's viewer chooses them."""
-    rgba: NDArray[np.float32] = model.geom_rgba[geom]
-    material = model.geom_matid[geom]
+def choose_colour(
+    model: mujoco.MjModel, rgba: NDArray[np.float32], material: int
+) -> NDArray[np.float32]:
+    """Red, green, blue, alpha (4,) from 0 to 1, as MuJoCo's viewer chooses them.
+
+    Args:
+        model: the model.
+        rgba: those of a geom or a site (4,).
+        material: index of its material; below 0 if it has none.
+    """
     if material >= 0 and np.array_equal(rgba, DEFAULT_RGBA):
         rgba = model.mat_rgba[material]
     return rgba
