@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 
 from buoyancy_mj import (
     Buoyancy,
+    Damping,
     LevelOscillation,
     MethodError,
     ModelError,
@@ -122,6 +123,49 @@ def test_integrators_of_first_order_keep_it_to_first_order(integrator):
     ends = [np.abs(drift(BALL, 5.0, timestep=t, integrator=integrator)).max() for t in (4e-3, 2e-3)]
     assert ends[0] < 1e-2
     assert ends[1] == pytest.approx(0.5 * ends[0], rel=0.2)
+
+
+def test_a_light_ball_that_leaves_in_a_few_steps_loses_energy_and_less_with_shorter_steps():
+    foam = f"""<body name="hull" pos="0 0 -.3"><freejoint/>
+    <inertial pos="0 0 1e-6" mass=".5" diaginertia=".005 .005 .005"/>
+    <geom type="sphere" size="{RADIUS}"/></body>"""
+    tops = []
+    for timestep in (0.002, 0.001, 0.00025):
+        model = model_of(foam, timestep)
+        data = mujoco.MjData(model)
+        buoyancy = Buoyancy(model, damping=None, added_mass="estimate")
+        mujoco.mj_forward(model, data)
+        limit = energy(model, buoyancy, data) / (0.5 * G)
+        with buoyancy.installed():
+            while data.qvel[2] >= 0.0:
+                mujoco.mj_step(model, data)
+        tops.append(data.qpos[2])
+    assert limit == pytest.approx(8.18, abs=0.01)
+    assert tops == pytest.approx([6.73, 7.60, 8.14], abs=0.05)
+
+
+def test_an_undamped_disc_that_tumbles_needs_rk4_or_drag():
+    disc = """<body name="hull" pos="0 0 -50"><freejoint/>
+    <inertial pos="0 0 1e-6" mass="5.65" diaginertia=".127 .127 .254"/>
+    <geom type="cylinder" size=".3 .01"/></body>"""
+
+    def growth(integrator, timestep, damping):
+        model = model_of(disc, timestep, integrator, gravity=0.0)
+        data, moments = mujoco.MjData(model), np.zeros(6)
+        data.qvel[:] = [0.5, 0.5, 0.5, 1.0, 1.5, 0.5]
+        ends = []
+        with Buoyancy(model, damping=damping, added_mass="ellipsoid").installed():
+            for steps in (0, round(5.0 / timestep)):
+                mujoco.mj_step(model, data, steps)
+                mujoco.mj_forward(model, data)
+                mujoco.mj_mulM(model, data, moments, data.qvel)
+                ends.append(data.qvel @ moments)
+        return ends[1] / ends[0]
+
+    assert growth("RK4", 0.002, None) == pytest.approx(1.0, abs=1e-6)
+    assert growth("implicitfast", 0.002, None) == pytest.approx(3.6, rel=0.1)
+    assert growth("implicitfast", 0.0005, None) == pytest.approx(1.2, rel=0.1)
+    assert growth("implicitfast", 0.002, Damping()) < 0.5
 
 
 def test_a_run_of_a_scene_books_the_energy_of_the_water_that_goes_along():
