@@ -105,7 +105,7 @@ class PassArrays(NamedTuple):
     """`wet` and `centres` are of this pass."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def begin(loads, record):
     """Find the submerged volume of each body, and set all causes to zero."""
     wrenches.merge(record.wet, loads.owners, record.centres)
@@ -113,7 +113,7 @@ def begin(loads, record):
         cause[:, :] = 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def end(engine, record):
     """Sum up the causes, and note of what instant they are."""
     total = record.total
@@ -256,13 +256,13 @@ LOADS = (
 """All loads, in the order in which they are added."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def deliver(loads, engine, record):
     """Add the sum of all loads to the engine's forces."""
     wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", inline="always")
 def augment(loads, engine, record):
     """Add the added mass of what is wet to the engine's mass matrix, once in each pass.
 
