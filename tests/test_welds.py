@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from buoyancy_mj import Buoyancy, Damping, Panels, Silhouette, TriMesh, Water
+from buoyancy_mj import Buoyancy, BuoyancyWarning, Damping, Panels, Silhouette, TriMesh, Water
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.welds import group_welded_bodies
 from buoyancy_mj.kernels.rays import count_windings, see
@@ -326,3 +326,21 @@ def test_hulls_of_one_body_that_touch_have_the_drag_of_one():
             drags.append(total(data, drag_of(model, data, viscous)))
     assert drags[2] == pytest.approx(drags[0], rel=1e-9, abs=1e-9)
     assert drags[3] == pytest.approx(drags[1], rel=1e-9, abs=1e-9)
+
+
+def test_added_mass_that_is_estimated_of_welded_bodies_one_by_one_is_told():
+    spec = mujoco.MjSpec.from_string(
+        "<mujoco><worldbody>"
+        '<body name="port" pos="0 .2 0"><freejoint/><geom type="sphere" size=".1"/></body>'
+        '<body name="starboard" pos="0 -.2 0"><freejoint/><geom type="sphere" size=".1"/></body>'
+        '</worldbody><equality><weld body1="port" body2="starboard"/></equality></mujoco>'
+    )
+    model = spec.compile()
+    with pytest.warns(BuoyancyWarning) as told:
+        Buoyancy(model, added_mass="ellipsoid")
+    assert str(told[0].message) == (
+        "the added mass of bodies 'port', 'starboard' is estimated for each of them alone, and "
+        "welds hold them together; make them one body, or state it by numerics 'added_mass:BODY'"
+    )
+    # what is stated is not told of
+    Buoyancy(model, added_mass={"port": [2.0] * 3 + [0.0] * 3, "starboard": [2.0] * 3 + [0.0] * 3})

@@ -12,6 +12,7 @@ from buoyancy_mj.errors import BuoyancyWarning, ModelError, choices, describe
 from buoyancy_mj.hulls.custom import find_body, read_numerics
 from buoyancy_mj.hulls.hull import Hull, group_by_body
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.welds import group_welded_bodies
 from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.loads.added_mass_estimates import Estimate, estimate_added_mass
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
@@ -140,7 +141,21 @@ def find_estimates(
                 if foil.body == body and foil.geom not in displacing:
                     matrix = matrix + estimate_plate(foil, density)
             found[body] = dataclasses.replace(found[body], matrix=matrix)
+        estimated = [body for body in sorted(found) if found[body].method != "stated"]
+        _tell_of_welds(model, estimated)
     return found
+
+
+def _tell_of_welds(model: mujoco.MjModel, estimated: Sequence[int]) -> None:
+    """Tell of bodies that are estimated one by one and that welds hold together."""
+    for group in group_welded_bodies(model, estimated):
+        names = ", ".join(f"'{body_name(model, body)}'" for body in group.places)
+        warnings.warn(
+            f"the added mass of bodies {names} is estimated for each of them alone, and welds hold "
+            "them together; make them one body, or state it by numerics 'added_mass:BODY'",
+            BuoyancyWarning,
+            stacklevel=2,
+        )
 
 
 def _judge(estimate: Estimate, body: str, source: str) -> None:
