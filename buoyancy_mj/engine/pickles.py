@@ -12,7 +12,7 @@ from typing import Any
 import mujoco
 
 from buoyancy_mj.engine import layout
-from buoyancy_mj.engine.devices import device_instances
+from buoyancy_mj.engine.device_kinds import device_instances
 from buoyancy_mj.engine.instances import plugin_instances
 
 

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 import mujoco
 
-from buoyancy_mj.engine.devices import DeviceKind, Plan, register_kind
+from buoyancy_mj.engine.device_kinds import DeviceKind, Plan
+from buoyancy_mj.engine.device_registration import register_kind
 from buoyancy_mj.kernels.entries import sensors as entries
 from buoyancy_mj.kernels.vehicle.sensors import Sensor
 
