@@ -12,7 +12,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from benchmarks.peers import capytaine
-from benchmarks.timing import ATTITUDES, least_duration, median_time
+from benchmarks.timing import ATTITUDES, median_time
 from buoyancy_mj import TriMesh, equilibria, equilibrium, hydrostatics, repair, righting_arm
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
@@ -25,18 +25,19 @@ Results = dict[str, dict[str, float]]
 
 
 def measure(quick: bool) -> Results:
-    """Measure the AUV, a ball, and a hull of 100,000 triangles."""
+    """Measure the AUV, a ball, and a hull of 100,000 triangles, or if quick a hull of 1,500."""
     with tempfile.TemporaryDirectory() as folder:
         return {
-            name: _measure_vehicle(path, least_duration(quick))
-            for name, path in _write_vehicles(Path(folder)).items()
+            name: _measure_vehicle(path, quick)
+            for name, path in _write_vehicles(Path(folder), quick).items()
+            if name == "hull" or not quick
         }
 
 
-def _write_vehicles(folder: Path) -> dict[str, Path]:
+def _write_vehicles(folder: Path, quick: bool) -> dict[str, Path]:
     """Write the ball and the hull as MJCF files beside meshes."""
     ball = trimesh.creation.icosphere(4, radius=0.5)
-    hull = _double_ended_hull()
+    hull = _double_ended_hull(28, 14) if quick else _double_ended_hull(224, 112)
     paths = {"sauvc_auv": catalog.models()["sauvc_auv"]}
     for name, mesh, mass in (
         ("ball", ball, 250.0),
@@ -58,10 +59,9 @@ def _write_vehicles(folder: Path) -> dict[str, Path]:
     return paths
 
 
-def _double_ended_hull() -> TriMesh:
-    """A double-ended hull with a flat deck, some 100,000 triangles."""
-    # vertices of one side, from stem to stem and from keel to deck
-    stations, rows = 224, 112
+def _double_ended_hull(stations: int, rows: int) -> TriMesh:
+    """A double-ended hull with a flat deck, of points from stem to stem and from keel to deck."""
+    # vertices of one side
     u, v = np.meshgrid(np.linspace(-1.0, 1.0, stations), np.linspace(0.0, 1.0, rows), indexing="ij")
     breadth = 0.25 * (1.0 - u**2) * (1.0 - (1.0 - v) ** 2)
     side = np.stack([u, breadth, 0.3 * v - 0.2], axis=-1).reshape(-1, 3)
@@ -84,7 +84,7 @@ def _double_ended_hull() -> TriMesh:
     return hull
 
 
-def _measure_vehicle(path: Path, least: float) -> dict[str, float]:
+def _measure_vehicle(path: Path, quick: bool) -> dict[str, float]:
     """Measure what the statics compute from a model, and the whole command `inspect`."""
     model = read_spec(path).compile()
     vessel = build_vessel(model)
@@ -100,7 +100,7 @@ def _measure_vehicle(path: Path, least: float) -> dict[str, float]:
         ("every equilibrium", lambda _: equilibria(model)),
         ("righting arm", lambda _: righting_arm(model)),
     ):
-        times[name] = median_time(call, least, fewest=3)
+        times[name] = median_time(call, quick, fewest=3)
 
     # the command
     started = time.perf_counter()
@@ -109,11 +109,11 @@ def _measure_vehicle(path: Path, least: float) -> dict[str, float]:
     times["inspect"] = time.perf_counter() - started
 
     if capytaine is not None and times["triangles"] < 20_000:
-        times["Capytaine"] = _measure_capytaine(vessel, least)
+        times["Capytaine"] = _measure_capytaine(vessel, quick)
     return times
 
 
-def _measure_capytaine(vessel: Vessel, least: float) -> float:
+def _measure_capytaine(vessel: Vessel, quick: bool) -> float:
     """Measure Capytaine's hydrostatics of all meshes joined."""
     parts = [mesh.transformed(vessel.rotation, vessel.position) for mesh in vessel.meshes]
     firsts = np.cumsum([0] + [len(part.vertices) for part in parts])
@@ -127,7 +127,7 @@ def _measure_capytaine(vessel: Vessel, least: float) -> float:
         center_of_mass=vessel.position,
         mass=vessel.mass,
     )
-    return median_time(lambda _: body.compute_hydrostatics(rho=1000.0, g=9.81), least, fewest=3)
+    return median_time(lambda _: body.compute_hydrostatics(rho=1000.0, g=9.81), quick, fewest=3)
 
 
 def describe(results: Results) -> Iterator[str]:

@@ -33,23 +33,24 @@ def _load_scene(name: str, *settings: str) -> Scene:
 # a step with water and without
 
 
-def measure_step(_quick: bool) -> Results:
+def measure_step(quick: bool) -> Results:
     """Measure steps of scenes, and of one of them by each model of pressure."""
     results = {
-        name: _mean_step(_load_scene(name)) for name in ("auv_drop_still", "auv_pool", "auv_waves")
+        name: _mean_step(_load_scene(name), quick)
+        for name in ("auv_drop_still", "auv_pool", "auv_waves")
     }
     for pressure in ("hydrostatic", "froude-krylov"):
         scene = _load_scene("auv_waves", f'pressure="{pressure}"')
-        results[f"auv_waves, {pressure}"] = _mean_step(scene)
+        results[f"auv_waves, {pressure}"] = _mean_step(scene, quick)
     return results
 
 
-def _mean_step(scene: Scene) -> dict[str, float]:
+def _mean_step(scene: Scene, quick: bool) -> dict[str, float]:
     """Mean time of one step [s] over the whole of a scene, with compiled water and without."""
     times = {}
     for label, with_water in (("with", True), ("without", False)):
         best = np.inf
-        for _ in range(3):
+        for _ in range(1 if quick else 3):
             model, data, _ = assemble(scene, with_water=with_water)
             mujoco.mj_forward(model, data)
             steps = round(scene.duration / scene.timestep)
@@ -72,9 +73,9 @@ def describe_step(results: Results) -> Iterator[str]:
 # a sea of many waves
 
 
-def measure_sea(_quick: bool) -> Results:
+def measure_sea(quick: bool) -> Results:
     """Measure the water's part of a step [s] in one wave and in a sea of the same energy."""
-    scene = _load_scene("auv_sea_state_2", "duration=10")
+    scene = _load_scene("auv_sea_state_2", f"duration={1 if quick else 10}")
     waves = {
         "one wave": RegularWave(0.3 / np.sqrt(8.0), period=3.5),
         "sea": JonswapSea(0.3, 3.5, components=COMPONENTS, spreading=10.0),
@@ -84,7 +85,8 @@ def measure_sea(_quick: bool) -> Results:
         results[pressure] = {}
         for label, wave in waves.items():
             water = dataclasses.replace(scene.water, waves=wave)
-            step = _mean_step(dataclasses.replace(scene, water=water, pressure=pressure))
+            sea = dataclasses.replace(scene, water=water, pressure=pressure)
+            step = _mean_step(sea, quick)
             results[pressure][label] = step["with"] - step["without"]
     return results
 

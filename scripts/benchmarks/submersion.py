@@ -8,7 +8,7 @@ import trimesh
 from rich.table import Table
 
 from benchmarks.peers import PEERS, Poses, capytaine
-from benchmarks.timing import ATTITUDES, least_duration, median_time
+from benchmarks.timing import ATTITUDES, median_time
 from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, read_scene, submerge
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.submersion import exact
@@ -29,7 +29,7 @@ def measure(quick: bool) -> Results:
     """Measure all meshes."""
     results: Results = {}
     for shape, solid in _solids(quick):
-        times = _measure_solid(solid, least_duration(quick))
+        times = _measure_solid(solid, quick)
         results.setdefault(shape, {})[f"{len(solid.faces)}"] = times
     return results
 
@@ -56,7 +56,7 @@ def _solids(quick: bool) -> list[tuple[str, trimesh.Trimesh]]:
     return [(shape, solid) for shape, solid in solids if len(solid.faces) <= _MOST]
 
 
-def _measure_solid(solid: trimesh.Trimesh, least: float) -> Times:
+def _measure_solid(solid: trimesh.Trimesh, quick: bool) -> Times:
     """Measure a mesh in five attitudes, its middle a little above or below the surface."""
     mesh = TriMesh(solid.vertices, solid.faces)
     wave = Water(waves=RegularWave(0.1, wavelength=10.0))
@@ -68,17 +68,17 @@ def _measure_solid(solid: trimesh.Trimesh, least: float) -> Times:
 
     times = {
         "triangles": float(len(solid.faces)),
-        "still": median_time(lambda i: submerge(mesh, positions[i], ATTITUDES[i]), least),
+        "still": median_time(lambda i: submerge(mesh, positions[i], ATTITUDES[i]), quick),
         "waves": median_time(
-            lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3), least
+            lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3), quick
         ),
-        "trimesh": median_time(poses.by_trimesh, least),
-        "scipy hull": median_time(poses.by_scipy, least),
-        "manifold3d": median_time(poses.by_manifold, least),
+        "trimesh": median_time(poses.by_trimesh, quick),
+        "scipy hull": median_time(poses.by_scipy, quick),
+        "manifold3d": median_time(poses.by_manifold, quick),
     }
     if capytaine is not None and len(solid.faces) < 100_000:
         fewest = 1 if len(solid.faces) > 10_000 else 3
-        times["Capytaine"] = median_time(poses.by_capytaine, least, fewest)
+        times["Capytaine"] = median_time(poses.by_capytaine, quick, fewest)
     times["bytes per triangle"] = _bytes(mesh) / len(solid.faces)
     return times
 

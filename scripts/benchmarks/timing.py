@@ -12,18 +12,20 @@ ATTITUDES = [Rotation.random(random_state=i).as_matrix() for i in range(5)]
 
 def least_duration(quick: bool) -> float:
     """How long [s] the repeats of a call take together at least."""
-    return 0.05 if quick else 0.5
+    return 0.0 if quick else 0.5
 
 
-def median_time(call: Callable[[int], object], least: float, fewest: int = 5) -> float:
-    """Median time of one call [s].
+def median_time(call: Callable[[int], object], quick: bool, fewest: int = 5) -> float:
+    """Median time of one call [s], after one that warms.
 
     Args:
         call: takes the index of one of the `ATTITUDES`.
-        least: duration of all repeats together, at least [s].
-        fewest: number of repeats, at least.
+        quick: measure one call alone.
+        fewest: number of repeats otherwise, at least.
     """
     call(0)
+    least = least_duration(quick)
+    fewest = 1 if quick else fewest
     times: list[float] = []
     while sum(times) < least or len(times) < fewest:
         started = time.perf_counter()

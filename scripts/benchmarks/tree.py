@@ -62,7 +62,7 @@ def _measure_ratio(
     # in turns, so that both see the same machine
     times: tuple[list[float], list[float]] = ([], [])
     started = time.perf_counter()
-    while time.perf_counter() - started < 2.0 * least:
+    while not times[0] or time.perf_counter() - started < 2.0 * least:
         for rotation in rotations:
             for hulls, durations in zip((with_tree, without_tree), times, strict=True):
                 before = time.perf_counter()
