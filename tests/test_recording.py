@@ -415,7 +415,7 @@ def test_a_run_that_breaks_off_says_why_and_where_its_recording_is(tmp_path, mon
 
 def test_a_full_disk_at_the_end_of_a_run_that_diverged_hides_neither(tmp_path, monkeypatch):
     def full(self):
-        if self._written > 100_000:
+        if self._file.size > 100_000:
             self.close(complete=False)
             raise RecordingError("the recording broke off: No space left on device; ...")
         return write(self)
