@@ -118,13 +118,12 @@ def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> P
     except BaseException:
         # whatever ends the run, what was recorded stays
         if not recording.closed:
-            _keep_partial(recording)
+            _keep_partial(recording, simulation)
         raise
 
 
-def _keep_partial(recording: "Recording") -> None:
+def _keep_partial(recording: "Recording", simulation: Simulation) -> None:
     """Close a recording that broke off, and say where it is."""
-    simulation = recording.simulation
     try:
         partial = recording.close(simulation.summary(), complete=False)
     except RecordingError as error:

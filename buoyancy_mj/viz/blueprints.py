@@ -1,6 +1,6 @@
 """How the Rerun viewer is laid out for a run and for an inspection."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import rerun.blueprint as rrb
@@ -8,9 +8,18 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.viz.plots import TIMELINE, list_plots
 
+MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
+"""Names of the tabs of plots."""
+MOST_IN_COLUMN = 6
+"""Most plots of instruments that stand in one column."""
+
 
 def run_blueprint(
-    title: str, look_at: NDArray[np.float64], size: float, vehicles: Sequence[str] = ()
+    title: str,
+    look_at: NDArray[np.float64],
+    size: float,
+    vehicles: Sequence[str] = (),
+    instruments: Mapping[str, Sequence[str]] | None = None,
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
@@ -19,15 +28,22 @@ def run_blueprint(
         look_at: point at which it looks (3,) [m].
         size: length of what it shows [m], a few of which lie between the eye and that point.
         vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
+        instruments: entities of each plot of sensors and actuators, by its title; they have a tab
+            of their own.
     """
     world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
     texts = rrb.Tabs(
         rrb.TextDocumentView(origin="summary", name="summary"),
         rrb.TextDocumentView(origin="scene", name="scene"),
     )
-    plots: rrb.Container = rrb.Vertical(*_plot_views())
-    if vehicles:
-        plots = rrb.Tabs(*(rrb.Vertical(*_plot_views(name), name=name) for name in vehicles))
+    tabs = [rrb.Vertical(*_plot_views(name), name=name) for name in vehicles]
+    if not tabs:
+        tabs = [rrb.Vertical(*_plot_views(), name=MOTION)]
+    if instruments:
+        views = [_instrument_view(title, paths) for title, paths in instruments.items()]
+        columns = 1 if len(views) <= MOST_IN_COLUMN else 2
+        tabs.append(rrb.Grid(*views, grid_columns=columns, name=INSTRUMENTS))
+    plots = rrb.Tabs(*tabs) if len(tabs) > 1 else tabs[0]
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Vertical(world, texts, row_shares=[4, 1]),
@@ -88,6 +104,13 @@ def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
         name=title,
         # a legend of all hulls would cover their lines
         plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=not has_hulls),
+    )
+
+
+def _instrument_view(title: str, paths: Sequence[str]) -> rrb.TimeSeriesView:
+    """A plot of numbers of one kind and unit."""
+    return rrb.TimeSeriesView(
+        origin="instruments", contents=[f"+ {path}" for path in paths], name=title
     )
 
 
