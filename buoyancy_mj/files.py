@@ -27,13 +27,14 @@ class GrowingFile:
 
     Args:
         path: the file; its folder is made.
+        grows_as: the end of the name under which it grows, as '.csv'; '' for that of its own.
 
     Raises:
         BlockingIOError: another process is writing it; `filename` names where.
         OSError: it cannot be made; `strerror` says why.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, grows_as: str = "") -> None:
         self.path = path
         """The name of the whole file."""
         self.partial: Path
@@ -47,7 +48,7 @@ class GrowingFile:
         if path.exists() and not path.is_file():
             raise OSError(0, "it is no regular file", str(path))
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._descriptor, self.partial = open_partial(path)
+        self._descriptor, self.partial = open_partial(path.with_suffix(grows_as or path.suffix))
 
     def append(self, piece: bytes | memoryview) -> None:
         """Append a piece, whole or not at all.

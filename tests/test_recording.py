@@ -477,9 +477,9 @@ def test_the_camera_looks_at_the_surface_or_at_a_vehicle_that_is_deep(
 ):
     seen = []
 
-    def run_blueprint(title, look_at, *others):
+    def run_blueprint(title, look_at, *others, **options):
         seen.append(look_at)
-        return blueprints.run_blueprint(title, look_at, *others)
+        return blueprints.run_blueprint(title, look_at, *others, **options)
 
     monkeypatch.setattr(recording_module, "run_blueprint", run_blueprint)
     recorded(tmp_path / "run.rrd", "auv_drop_still", [*SHORT, f"start.position.2={height}"])

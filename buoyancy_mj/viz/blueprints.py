@@ -18,8 +18,10 @@ def run_blueprint(
     title: str,
     look_at: NDArray[np.float64],
     size: float,
-    vehicles: Sequence[str] = (),
-    instruments: Mapping[str, Sequence[str]] | None = None,
+    *,
+    texts: Sequence[str],
+    vehicles: Sequence[str],
+    instruments: Mapping[str, Sequence[str]],
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
@@ -27,15 +29,13 @@ def run_blueprint(
         title: name of the view of the world.
         look_at: point at which it looks (3,) [m].
         size: length of what it shows [m], a few of which lie between the eye and that point.
+        texts: entities of the texts.
         vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
         instruments: entities of each plot of sensors and actuators, by its title; they have a tab
             of their own.
     """
     world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
-    texts = rrb.Tabs(
-        rrb.TextDocumentView(origin="summary", name="summary"),
-        rrb.TextDocumentView(origin="scene", name="scene"),
-    )
+    below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
     tabs = [rrb.Vertical(*_plot_views(name), name=name) for name in vehicles]
     if not tabs:
         tabs = [rrb.Vertical(*_plot_views(), name=MOTION)]
@@ -46,7 +46,7 @@ def run_blueprint(
     plots = rrb.Tabs(*tabs) if len(tabs) > 1 else tabs[0]
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(world, texts, row_shares=[4, 1]),
+            rrb.Vertical(world, below, row_shares=[4, 1]),
             plots,
             column_shares=[3, 2],
         ),

@@ -47,14 +47,23 @@ class Recording:
         run: the run: a `Simulation`, or a loop of somebody's own.
         path: the file; None for none.
         live: whether to stream to a Rerun viewer, which is started if none runs.
+        has_summary: whether `close` will be given a summary.
 
     Raises:
         RecordingError: the file cannot be written, or no viewer could be started.
     """
 
-    def __init__(self, run: Run, path: Path | None = None, *, live: bool = False) -> None:
+    def __init__(
+        self,
+        run: Run,
+        path: Path | None = None,
+        *,
+        live: bool = False,
+        has_summary: bool = True,
+    ) -> None:
         self.run = run
         """The run."""
+        self._texts = ("summary", "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
         self._streams: list[rr.RecordingStream] = []
@@ -172,7 +181,12 @@ class Recording:
         # vehicles apart from each other fill less of the picture than one
         size = CLOSER * self._size if self._several else self._size
         layout = run_blueprint(
-            run.title, look_at, size, self._several, instruments.list_plots(channels)
+            run.title,
+            look_at,
+            size,
+            texts=self._texts,
+            vehicles=self._several,
+            instruments=instruments.list_plots(channels),
         )
         for stream in self._streams:
             stream.send_blueprint(layout)
