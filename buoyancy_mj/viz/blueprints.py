@@ -12,6 +12,8 @@ MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
 """Names of the tabs of plots."""
 MOST_IN_COLUMN = 6
 """Most plots of instruments that stand in one column."""
+MOST_IN_LEGEND = 4
+"""Most lines of instruments that a legend names; more would cover the lines."""
 
 
 def run_blueprint(
@@ -103,14 +105,22 @@ def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
         contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
         name=title,
         # a legend of all hulls would cover their lines
-        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=not has_hulls),
+        plot_legend=_legend(visible=not has_hulls),
     )
+
+
+def _legend(*, visible: bool) -> rrb.PlotLegend:
+    """The legend of a plot, where lines are covered least."""
+    return rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=visible)
 
 
 def _instrument_view(title: str, paths: Sequence[str]) -> rrb.TimeSeriesView:
     """A plot of numbers of one kind and unit."""
     return rrb.TimeSeriesView(
-        origin="instruments", contents=[f"+ {path}" for path in paths], name=title
+        origin="instruments",
+        contents=[f"+ {path}" for path in paths],
+        name=title,
+        plot_legend=_legend(visible=len(paths) <= MOST_IN_LEGEND),
     )
 
 

@@ -1,6 +1,5 @@
 """`Recording`: a run as Rerun data, in a file, in a live viewer, or in both."""
 
-import contextlib
 import os
 import sys
 import uuid
@@ -104,8 +103,10 @@ class Recording:
     def __del__(self) -> None:
         # a stream that is dropped with data still in it may wait for ever
         for stream in getattr(self, "_streams", ()):
-            with contextlib.suppress(Exception):
+            try:  # noqa: SIM105 - contextlib may be gone at the end of the interpreter
                 stream.flush(timeout_sec=5.0)
+            except Exception:
+                pass
 
     @property
     def closed(self) -> bool:

@@ -13,6 +13,8 @@ from buoyancy_mj.viz.log import Log
 
 ENTITY = "world/thrusters"
 COLOUR = (255, 140, 0)
+LONGER = 4.0
+"""Length of an arrow over that of a load of the same force: thrusters are weak."""
 
 
 class ThrusterDrawing:
@@ -36,7 +38,8 @@ class ThrusterDrawing:
         self._sites, references = model.actuator_trnid[self._actuators].T
         self._axes = np.where(references >= 0, references, self._sites)
         bodies = model.site_bodyid[self._sites].tolist()
-        self._scales = np.array([arrow_scale(run.vehicles.values(), body) for body in bodies])
+        scales = [arrow_scale(run.vehicles.values(), body) for body in bodies]
+        self._scales = LONGER * np.array(scales)
 
     def draw_static(self, log: Log) -> None:
         """Draw what stays the same: colour, and names to be shown on demand."""
@@ -47,7 +50,7 @@ class ThrusterDrawing:
             log(ENTITY, style, static=True)
 
     def draw(self, log: Log, frame: Frame) -> None:
-        """Draw an arrow for each force, on the scale of all forces on its vehicle."""
+        """Draw an arrow for each force; a quarter of the vehicle's weight is half its length."""
         if len(self._actuators):
             vectors = self._scales[:, None] * self.find_forces(frame.data)
             origins = frame.data.site_xpos[self._sites]
