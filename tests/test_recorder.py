@@ -4,6 +4,7 @@ import contextlib
 import csv
 import subprocess
 import sys
+import tomllib
 
 import mujoco
 import numpy as np
@@ -138,6 +139,24 @@ def test_it_holds_sensors_controls_thrusters_tendons_and_contacts(recorded):
         "/world/contacts/points",
         "/world/contacts/forces",
     } <= recorded[3].keys()
+
+
+def test_instruments_have_a_tab_with_a_plot_for_each_kind_and_unit(recorded):
+    reader = RrdReader(str(recorded[2] / "run.rrd"))
+    names = []
+    for chunk in reader.stream(store=reader.blueprints()[0]).to_chunks():
+        for column, values in chunk.to_record_batch().to_pydict().items():
+            names += [one for (one,) in values] if column.endswith(":display_name") else []
+    assert {
+        "rov", "stone", "Sensors and controls", "sensors [m/s^2]", "sensors [m]", "sensors [s]",
+        "controls", "actuator forces [N]", "activations",
+    } <= set(names)  # fmt: skip
+    assert "summary" not in names
+
+
+def test_the_water_of_the_loop_is_told_as_the_plugin_would_state_it(recorded):
+    texts = tomllib.loads(find_run(*recorded[:2]).text)
+    assert texts["waves"] == "regular amplitude=0.1 period=2.0"
 
 
 def test_frames_come_at_the_rate_and_each_at_exactly_its_time(recorded):

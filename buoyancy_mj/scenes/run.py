@@ -1,6 +1,7 @@
 """`Run`: what is asked of a run to record it, be it a scene's or somebody's own loop."""
 
 import dataclasses
+import json
 from collections.abc import Mapping
 from typing import Protocol
 
@@ -68,7 +69,8 @@ class OwnRun:
         if not has_texts(settings):
             return f"# {self.buoyancy!r}"
         texts = write_plugin_config(settings)
-        return "\n".join(f'{key} = "{text}"' for key, text in texts.items() if text)
+        lines = {key: json.dumps(text, ensure_ascii=False) for key, text in texts.items() if text}
+        return "\n".join(f"{key} = {text}" for key, text in lines.items())
 
 
 def find_run(
