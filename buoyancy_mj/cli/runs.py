@@ -3,9 +3,9 @@
 import dataclasses
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from rich.progress import TextColumn, TimeRemainingColumn
@@ -20,6 +20,7 @@ from buoyancy_mj.cli.flags import (
     SceneFlags,
     SelectionFlags,
     check_recording_name,
+    check_table_name,
 )
 from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.errors import RecordingError, SceneError
@@ -28,9 +29,7 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.summary import Summary
-
-if TYPE_CHECKING:
-    from buoyancy_mj.viz.recording import Recording
+from buoyancy_mj.viz.sinks import open_sinks
 
 
 @command()
@@ -44,6 +43,10 @@ def run(
     no_record: Annotated[
         bool, typer.Option("--no-record", help="Do not record to a file.")
     ] = False,
+    series: Annotated[
+        Path | None,
+        typer.Option(help="Write a row for each frame into this .csv or .parquet as well."),
+    ] = None,
     live: Annotated[
         bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
     ] = False,
@@ -60,6 +63,7 @@ def run(
     if record is not None and no_record:
         raise SceneError("--record and --no-record contradict each other; give one of them")
     check_recording_name(record)
+    check_table_name(series)
 
     # the run
     path = catalog.scene_path(scene)
@@ -69,16 +73,18 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    recording = _run_to_end(simulation, target, live=live)
+    recording, table = _run_to_end(simulation, target, series, live=live)
 
     # its summary
     summary = simulation.summary()
     if as_json:
-        typer.echo(_to_json(summary, recording))
+        typer.echo(_to_json(summary, recording, table))
         return
     out.print(_to_table(summary))
     if recording is not None:
         print_line(out, f"open the recording: {viewer_command(recording)}")
+    if table is not None:
+        print_line(out, f"the series is in '{table}'")
 
 
 @command("list")
@@ -104,45 +110,52 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
     view_simulation(Simulation(read_scene(catalog.scene_path(scene), settings)))
 
 
-def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> Path | None:
-    """Run to the end, and record to a file, to a live viewer, or to both; the file."""
-    if target is None and not live:
-        _run_frames(simulation, lambda _: None)
-        return None
-    from buoyancy_mj.viz.recording import Recording  # needs Rerun, which takes time to import
+def _run_to_end(
+    simulation: Simulation, target: Path | None, series: Path | None, *, live: bool
+) -> tuple[Path | None, Path | None]:
+    """Run to the end; record to a file, to a live viewer, to a table, or to several of them.
 
-    recording = Recording(simulation, target, live=live)
+    Returns:
+        Where the recording and the table are.
+    """
+    recording, table = open_sinks(simulation, target, series, live=live)
     try:
-        _run_frames(simulation, recording.add)
-        return recording.close(simulation.summary())
+        _run_frames(simulation, [sink.add for sink in (recording, table) if sink is not None])
+        return (
+            recording.close(simulation.summary()) if recording is not None else None,
+            table.close() if table is not None else None,
+        )
     except BaseException:
         # whatever ends the run, what was recorded stays
-        if not recording.closed:
-            _keep_partial(recording)
+        if recording is not None and not recording.closed:
+            summary = simulation.summary()
+            _keep_partial("recording", simulation, lambda: recording.close(summary, complete=False))
+        if table is not None and not table.closed:
+            _keep_partial("series", simulation, lambda: table.close(complete=False))
         raise
 
 
-def _keep_partial(recording: "Recording") -> None:
-    """Close a recording that broke off, and say where it is."""
-    simulation = recording.simulation
+def _keep_partial(what: str, simulation: Simulation, close: Callable[[], Path | None]) -> None:
+    """Close a recording or a table that broke off, and say where it is."""
     try:
-        partial = recording.close(simulation.summary(), complete=False)
+        partial = close()
     except RecordingError as error:
         print_line(err, f"note: {error}", style="yellow")
     else:
         if partial is not None:
             time = simulation.data.time
-            print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
+            print_line(err, f"the {what} up to {time:.2f} s is in '{partial}'")
 
 
-def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
-    """Run to the end, calling `add` with each frame, and show the simulated time."""
+def _run_frames(simulation: Simulation, sinks: Sequence[Callable[[Frame], None]]) -> None:
+    """Run to the end, handing each frame to all `sinks`, and show the simulated time."""
     scene = simulation.scene
     columns = TextColumn("{task.completed:.1f} of {task.total:.1f} s"), TimeRemainingColumn()
     with show_progress(scene.title, scene.duration, *columns) as update:
         for frame in simulation.frames():
             raise_received()
-            add(frame)
+            for add in sinks:
+                add(frame)
             update(completed=frame.time)
 
 
@@ -160,13 +173,14 @@ def _to_table(summary: Summary) -> Table:
     return table
 
 
-def _to_json(summary: Summary, recording: Path | None) -> str:
-    """A summary and the path of its recording as JSON, which knows finite numbers only."""
+def _to_json(summary: Summary, recording: Path | None, table: Path | None) -> str:
+    """A summary and the paths of its files as JSON, which knows finite numbers only."""
     values: dict[str, Any] = summary.values()
     if len(summary.vehicles) > 1:
         # a table for each vehicle, in place of names with dots
         values = dataclasses.asdict(summary)
-    values |= {"recording": str(recording) if recording else None}
+    for name, path in (("recording", recording), ("series", table)):
+        values[name] = str(path) if path else None
     return json.dumps(_drop_infinite(values), indent=2)
 
 
