@@ -269,4 +269,5 @@ class Thruster:
                 rows = rows[rests[-1] :] if side > 0.0 else rows[: rests[0] + 1]
             here = speeds * side > 0.0
             commands = np.where(here, np.interp(speeds, rows[:, 1], rows[:, 0]), commands)
-        return commands + self.neutral
+        answer: NDArray[np.float64] = commands + self.neutral
+        return answer
