@@ -72,6 +72,11 @@ from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
 from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
+from buoyancy_mj.vehicle.thruster import Thruster as Thruster
+from buoyancy_mj.vehicle.thrusters import ThrusterReading as ThrusterReading
+from buoyancy_mj.vehicle.thrusters import add_thruster as add_thruster
+from buoyancy_mj.vehicle.thrusters import find_thruster as find_thruster
+from buoyancy_mj.vehicle.thrusters import read_thrusters as read_thrusters
 from buoyancy_mj.viz.recorder import Recorder as Recorder
 
 __version__ = _version("buoyancy_mj")

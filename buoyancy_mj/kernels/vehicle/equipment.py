@@ -2,6 +2,8 @@
 
 from typing import Annotated, NamedTuple
 
+import numpy as np
+
 from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths
 from buoyancy_mj.kernels.multibody import Bodies, Geoms, Joints, Option
 
@@ -20,11 +22,13 @@ class Sites(NamedTuple):
 class Actuators(NamedTuple):
     """Commands, states and forces."""
 
+    actuator_group: Annotated[Int32s, "mjModel", ("nactuator",)]
+    """Groups, which an option may switch off."""
     actuator_ctrllimited: Annotated[Truths, "mjModel", ("nu",)]
     """Whether the range of commands holds."""
     actuator_ctrlrange: Annotated[Doubles, "mjModel", ("nu", 2)]
     """Least and most command."""
-    actuator_actadr: Annotated[Int32s, "mjModel", ("nu",)]
+    actuator_actadr: Annotated[Int32s, "mjModel", ("nactuator",)]
     """The first state of each; -1 for none."""
     ctrl: Annotated[Doubles, "mjData", ("nu",)]
     """Commands."""
@@ -32,7 +36,7 @@ class Actuators(NamedTuple):
     """States."""
     act_dot: Annotated[Doubles, "mjData", ("na",)]
     """Rates of the states [1/s]."""
-    actuator_force: Annotated[Doubles, "mjData", ("nu",)]
+    actuator_force: Annotated[Doubles, "mjData", ("nout",)]
     """Forces along the actuators."""
 
 
@@ -49,6 +53,10 @@ class Equipment(NamedTuple):
     """All that a device reads of the engine, and the arrays that it writes to."""
 
     option: Option
+    integrator: Annotated[np.int32, "mjModel.opt"]
+    """One of mjtIntegrator."""
+    disableactuator: Annotated[np.int32, "mjModel.opt"]
+    """Bits of the groups of actuators that are switched off."""
     time: Annotated[float, "mjData"]
     """[s]."""
     bodies: Bodies
