@@ -3,11 +3,14 @@
 import mujoco
 import numpy as np
 import pytest
-from mujoco import rollout
+from mujoco import batch, rollout
 
 from buoyancy_mj import (
+    Altimeter,
     Depth,
+    Dvl,
     Elevation,
+    Hydrophone,
     ModelError,
     Pressure,
     RegularWave,
@@ -19,6 +22,7 @@ from buoyancy_mj import (
     add_water,
     find_streams,
 )
+from buoyancy_mj.vehicle.sensors.texts import format_sensor, list_keys, parse_sensor
 
 SEA = Water(density=1025.0, level=0.5, waves=RegularWave(0.3, period=4.0), current=(0.4, -0.2, 0.0))
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -227,6 +231,58 @@ def test_reset_data_take_their_first_sample_anew():
     mujoco.mj_resetData(model, data)
     mujoco.mj_step(model, data)
     assert data.sensor("depth").data[0] == run(model, 1)[0, 0]
+
+
+# wherever MuJoCo steps --------------------------------------------------------------------------
+
+EVERYTHING = (
+    Pressure(absolute=True, noise=20.0, bias=-3.5, seed=7),
+    Depth(still=True, rate=40.0),
+    Elevation(noise=0.01),
+    WaterVelocity(frame="site", noise=(0.1, 0.2, 0.0)),
+    SpeedThroughWater(bias=(0.1, 0.0, 0.0)),
+    Wet(radius=0.05, rate=10.0),
+    Dvl(angle=22.5, water_lock=3.0, noise=0.01, range_noise=0.1, rate=8.0),
+    Altimeter(surface=True, min_range=0.1, max_range=30.0),
+    Hydrophone(pinger="mark", sound_speed=1480.0, period=0.1, angle_noise=0.01),
+)
+
+
+@pytest.fixture(scope="module")
+def everything():
+    """The spec of a buoy with one of each, over a floor, and beside a pinger."""
+    spec = mujoco.MjSpec.from_string(BUOY)
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[9, 9, 1], pos=[0, 0, -5])
+    spec.worldbody.add_site(name="mark", pos=[4, 1, -3])
+    add_water(spec, SEA)
+    for sensor in EVERYTHING:
+        add_sensor(spec, "probe", sensor)
+    return spec
+
+
+def test_saved_mjcf_reads_the_same_bit_for_bit(everything):
+    read = run(everything.compile(), 20)
+    again = run(mujoco.MjModel.from_xml_string(everything.to_xml()), 20)
+    assert np.isfinite(read[-1]).all()
+    assert np.array_equal(again, read, equal_nan=True)
+
+
+def test_batches_read_what_single_runs_read_and_streams_part_them(everything):
+    model = everything.compile()
+    read = run(model, 15)[-1]
+    copies = batch.Batch(model, 4, nthread=2)
+    copies.bind("plugin_state")[3, find_streams(model)] = 5.0
+    batched = copies.bind("sensordata")
+    copies.step(nstep=15)
+    assert (batched[:3] == read).all()
+    assert (batched[3] != read).sum() > 8
+    assert (batched[3] == run(model, 15, stream=5)[-1]).all()
+
+
+def test_settings_become_texts_and_settings_again():
+    for sensor in (*EVERYTHING, *[type(sensor)() for sensor in EVERYTHING]):
+        texts = {key: format_sensor(sensor).get(key, "") for key in list_keys(type(sensor))}
+        assert parse_sensor(type(sensor), texts, "sensor") == sensor
 
 
 # bad input -------------------------------------------------------------------------------------

@@ -29,7 +29,7 @@ class Dvl(NoisySensor):
     The beams stand in the Janus configuration around -z of the site. Each gives the speed along it,
     relative to what it meets, and the velocity is the one that fits at least three of them best,
     along the axes of the site. It is locked to the bottom (1), or with `water_lock` to a layer of
-    water (2), or to nothing (0): then the velocity reads 0. A beam that meets nothing within its
+    water (2), or to nothing (0): then the velocity is NaN. A beam that meets nothing within its
     range, or something in the air, reads -1; in the air all do.
 
     Raises:
@@ -41,7 +41,7 @@ class Dvl(NoisySensor):
         ("x", "m/s"), ("y", "m/s"), ("z", "m/s"), ("lock", ""),
         ("range_1", "m"), ("range_2", "m"), ("range_3", "m"), ("range_4", "m"),
     )  # fmt: skip
-    LOST: ClassVar[tuple[float, ...]] = (0.0, 0.0, 0.0, 0.0, -1.0, -1.0, -1.0, -1.0)
+    LOST: ClassVar[tuple[float, ...]] = (*[math.nan] * 3, 0.0, *[-1.0] * 4)
     NOISY: ClassVar[int] = 3
     BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = {
         "angle": (1.0, 80.0),

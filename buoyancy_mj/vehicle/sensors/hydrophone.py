@@ -26,7 +26,7 @@ class Hydrophone(NoisySensor):
     The sound shows where the pinger was when it left, the pinger taken to move straight. Bearing is
     from x of the site towards y, to the left; elevation from there towards z. Range is travel time
     times the speed of sound: pinger and hydrophone share a clock. Where either is in the air, or
-    before the first ping arrives, range and time are -1 and the angles 0. Sound goes through
+    before the first ping arrives, range and time are -1 and the angles NaN. Sound goes through
     everything: nothing shades the pinger, and nothing reflects it.
 
     Raises:
@@ -37,7 +37,7 @@ class Hydrophone(NoisySensor):
     CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (
         ("range", "m"), ("bearing", "rad"), ("elevation", "rad"), ("travel_time", "s"),
     )  # fmt: skip
-    LOST: ClassVar[tuple[float, ...]] = (-1.0, 0.0, 0.0, -1.0)
+    LOST: ClassVar[tuple[float, ...]] = (-1.0, math.nan, math.nan, -1.0)
     NOISY: ClassVar[int] = 1
     BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = {
         "sound_speed": (100.0, math.inf),

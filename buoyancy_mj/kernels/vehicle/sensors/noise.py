@@ -16,7 +16,7 @@ _LAST_PLACE = 2.0**-53
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _mix(word):
+def mix(word):
     """Spread each bit of a word over all 64: the finalizer of SplitMix64.
 
     Steele, Lea and Flood (2014), "Fast splittable pseudorandom number generators", OOPSLA.
@@ -29,11 +29,11 @@ def _mix(word):
 @njit(cache=True, error_model="numpy")
 def hash_words(seed, stream, sensor, sample, number):
     """One word of 64 random bits for five whole numbers, mixed in one after the other."""
-    word = _mix(np.uint64(seed) + _GOLDEN)
-    word = _mix((word ^ np.uint64(stream)) + _GOLDEN)
-    word = _mix((word ^ np.uint64(sensor)) + _GOLDEN)
-    word = _mix((word ^ np.uint64(sample)) + _GOLDEN)
-    return _mix((word ^ np.uint64(number)) + _GOLDEN)
+    word = mix(np.uint64(seed) + _GOLDEN)
+    word = mix((word ^ np.uint64(stream)) + _GOLDEN)
+    word = mix((word ^ np.uint64(sensor)) + _GOLDEN)
+    word = mix((word ^ np.uint64(sample)) + _GOLDEN)
+    return mix((word ^ np.uint64(number)) + _GOLDEN)
 
 
 @njit(cache=True, error_model="numpy")
