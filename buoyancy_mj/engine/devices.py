@@ -26,6 +26,7 @@ from buoyancy_mj.engine.instances import find_instance_bodies, plugin_instances
 from buoyancy_mj.engine.model_memory import copy_model, fingerprint_devices, read_texts
 from buoyancy_mj.engine.plugin_struct import register_plugin
 from buoyancy_mj.engine.waters import LOCK, find_water, is_making_water
+from buoyancy_mj.hulls.plugins import note_plugin
 from buoyancy_mj.kernels.entries import device_hooks
 from buoyancy_mj.kernels.entries.closures import Closure, compile_kernel
 from buoyancy_mj.kernels.entries.views import Table
@@ -95,6 +96,7 @@ def register_kind(kind: DeviceKind) -> None:
         functions["nsensordata"] = hooks.count(device_hooks.count_readings, kind.numbers)
     slot = register_plugin(kind.plugin, kind.keys, int(kind.capability), int(kind.stage), functions)
     _kinds[slot] = kind
+    note_plugin(kind.plugin, slot, kind.keys)
 
 
 def device_instances(model: mujoco.MjModel) -> list[int]:

@@ -101,8 +101,8 @@ def augment(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, l
 def _augment(
     load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, record: Record
 ) -> None:
-    """Add the added mass to the mass matrix, and let MuJoCo take up what was changed."""
-    if "added_mass" not in load_model.causes:
+    """Add added mass and tanks to the mass matrix, and let MuJoCo take up what was changed."""
+    if not load_model.augments:
         return
     done = passes.augment(load_model.arrays, _read_engine(model, data), record)
     if done != passes.UNCHANGED:

@@ -14,6 +14,7 @@ from numba import njit
 from numba.extending import register_jitable
 
 from buoyancy_mj.kernels import (
+    ballast,
     damping,
     foils,
     inertia,
@@ -24,6 +25,7 @@ from buoyancy_mj.kernels import (
     wrenches,
 )
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.ballast import Ballast
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.foils import Foils
 from buoyancy_mj.kernels.hulls import Hulls
@@ -48,11 +50,12 @@ class LoadArrays(NamedTuple):
     owners: Annotated[Words, ("h",)]
     """Body of each hull."""
     bodies: Annotated[Words, ("b",)]
-    """Bodies that have hulls or foils."""
+    """Bodies that have hulls, foils or ballast."""
     sea: Sea
     damping: DampingArrays
     foils: Foils
     added_mass: AddedMass
+    ballast: Ballast
 
 
 class Causes(NamedTuple):
@@ -68,23 +71,24 @@ class Causes(NamedTuple):
     foil: Annotated[Doubles, ("nbody", 6)]
     added_mass: Annotated[Doubles, ("nbody", 6)]
     slamming: Annotated[Doubles, ("nbody", 6)]
+    ballast: Annotated[Doubles, ("nbody", 6)]
 
 
 class Record(NamedTuple):
     """What a pass leaves."""
 
     wet: Annotated[Doubles, ("h", 8)]
-    """Submersion of each hull, see `clip.submerge_hulls`."""
+    """Submersion of each hull, and of the geoms of bladders, see `clip.submerge_hulls`."""
     centres: Annotated[Doubles, ("nbody", 4)]
     """Submerged volume of each body [m^3] and its centroid [m]."""
     heads: Annotated[Doubles, ("h", 6)]
-    """Pressure on each hull, see `pressure.press_hulls`; zeros where no model of pressure asks for
+    """Pressure on each of them, see `pressure.press_hulls`; zeros where no model of pressure asks for
     it."""
     causes: Causes
     total: Annotated[Doubles, ("nbody", 6)]
     """Sum over the causes."""
     inertia: Annotated[Doubles, ("nC",)]
-    """The mass matrix with the added mass in it, as the last pass left it."""
+    """The mass matrix with added mass and the water of tanks in it, as the last pass left it."""
     instant: Annotated[Doubles, (1,)]
     """Time of the pass [s]."""
     xipos: Annotated[Doubles, ("nbody", 3)]
@@ -244,6 +248,26 @@ def add_reaction(arrays):
     )
 
 
+@register_jitable
+def add_ballast(arrays):
+    """Bladders, and the water in tanks and compartments."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    ballast.add_ballast(
+        loads.ballast,
+        engine.commands,
+        engine.bodies,
+        engine.joints,
+        engine.geoms,
+        loads.sea,
+        engine.time,
+        engine.option.timestep,
+        arrays.gravity,
+        record.wet,
+        record.heads,
+        record.causes.ballast,
+    )
+
+
 LOADS = (
     add_buoyancy,
     add_wave_pressure,
@@ -252,6 +276,7 @@ LOADS = (
     add_radiation,
     add_foils,
     add_reaction,
+    add_ballast,
 )
 """All loads, in the order in which they are added."""
 
@@ -264,7 +289,7 @@ def deliver(loads, engine, record):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def augment(loads, engine, record):
-    """Add the added mass of what is wet to the engine's mass matrix, once in each pass.
+    """Add added mass and the water in tanks to the engine's mass matrix, once in each pass.
 
     Returns:
         `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
@@ -273,9 +298,18 @@ def augment(loads, engine, record):
     if _is_augmented(mass, record):
         return UNCHANGED
     record.ids[AUGMENTED] = 0
-    if not inertia.add_inertia(
+    wet = inertia.add_inertia(
         loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
-    ):
+    )
+    filled = ballast.add_inertia(
+        loads.ballast,
+        engine.commands.act,
+        loads.sea.density,
+        engine.bodies,
+        engine.joints,
+        engine.mass_matrix,
+    )
+    if not (wet or filled):
         return UNCHANGED
     record.ids[AUGMENTED] = 1
     record.inertia[:] = mass
