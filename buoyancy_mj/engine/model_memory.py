@@ -21,7 +21,6 @@ MODEL_ARRAYS = (
     "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
     "names", "plugin", "plugin_attr", "plugin_attradr",
     "actuator_plugin", "actuator_trntype", "actuator_trnid", "actuator_actadr", "actuator_actnum",
-    "actuator_actlimited", "actuator_actrange",
 )  # fmt: skip
 """Arrays of mjModel from which the hulls, their loads and the room for them are made.
 
@@ -33,8 +32,7 @@ DEVICE_ARRAYS = (
     "body_plugin", "body_pos", "body_quat", "geom_bodyid", "geom_type", "geom_size", "geom_pos",
     "geom_quat", "geom_dataid", "site_bodyid", "site_pos", "site_quat", "site_size",
     "actuator_plugin", "actuator_trntype", "actuator_trnid", "actuator_gear", "actuator_ctrlrange",
-    "actuator_ctrllimited", "actuator_actadr", "actuator_actnum", "actuator_actlimited",
-    "actuator_actrange", "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr",
+    "actuator_ctrllimited", "actuator_actadr", "actuator_actnum", "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr",
     "mesh_facenum", "mesh_face", "body_dofnum", "jnt_bodyid",
     "sensor_plugin", "sensor_objtype", "sensor_objid", "sensor_adr", "sensor_dim",
     "plugin_stateadr", "plugin_statenum",

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.hulls.ballasts import (
     PLUGIN,
     Ballasting,
@@ -24,6 +24,7 @@ from buoyancy_mj.hulls.references import find_named
 from buoyancy_mj.hulls.verdicts import SOLID_TYPES
 from buoyancy_mj.meshes.fills import FillCurve, find_fill
 from buoyancy_mj.meshes.mesh import TriMesh
+from buoyancy_mj.values import read_array, read_number
 
 _ROUNDING = 1e-6
 """Part of a volume by which a capacity may be beyond it: facets and texts are rounded."""
@@ -147,7 +148,7 @@ def place_ballast(
 
     Raises:
         ModelError: texts that make no sense, an actuator that is not at a site or keeps another
-            state, a geom that is none or bounds no volume, that cannot move or moves with another
+            number of states, a geom that is none or bounds no volume, that cannot move or moves with another
             body than the site, or a capacity beyond its volume.
         MeshError: a geom whose mesh bounds no volume.
     """
@@ -185,6 +186,50 @@ def place_ballast(
     return placed
 
 
+def read_volumes(
+    model: mujoco.MjModel,
+    placed: Sequence[PlacedBallast],
+    ballast: Mapping[str, float] | ArrayLike | None,
+) -> list[float]:
+    """What all ballast of a model holds [m^3], in its order.
+
+    Args:
+        model: any model.
+        placed: its ballast.
+        ballast: volumes [m^3] by name, others being empty; or the states of actuators (na,), as
+            `data.act` has them; None for empty.
+
+    Raises:
+        ModelError: an unknown name, a volume beyond the capacity, or another number of states.
+    """
+    if isinstance(ballast, Mapping):
+        names = [one.name for one in placed]
+        for name in ballast:
+            if name not in names:
+                raise ModelError(
+                    f"the model has no ballast {describe(name)}; {choices(name, names)}"
+                )
+        volumes = [ballast.get(one.name, 0.0) for one in placed]
+    elif ballast is not None:
+        states = read_array(ModelError, "ballast", ballast, (model.na,))
+        volumes = [float(states[one.state]) for one in placed]
+    else:
+        volumes = [0.0] * len(placed)
+    return [
+        min(
+            read_number(
+                ModelError,
+                f"the volume of ballast '{one.name}'",
+                volume,
+                least=0.0,
+                most=(1.0 + _ROUNDING) * one.capacity,
+            ),
+            one.capacity,
+        )
+        for one, volume in zip(placed, volumes, strict=True)
+    ]
+
+
 def _find_actuator(model: mujoco.MjModel, instance: int) -> int:
     """The actuator of a plugin instance.
 
@@ -215,7 +260,7 @@ def _check_geom(model: mujoco.MjModel, geom: int, body: int, what: str) -> None:
 
 
 def _check_capacity(model: mujoco.MjModel, placed: PlacedBallast, what: str) -> None:
-    """Refuse a capacity beyond the geom, and a state that is not kept within it."""
+    """Refuse a capacity beyond the geom, and another number of states than one."""
     name, volume = geom_name(model, placed.geom), placed.mesh.volume
     stated = placed.ballast.capacity
     if placed.holds_water and stated is not None and stated > (1.0 + _ROUNDING) * volume:
@@ -223,14 +268,9 @@ def _check_capacity(model: mujoco.MjModel, placed: PlacedBallast, what: str) -> 
             f"{what} has a capacity of {stated:g} m^3, and its geom '{name}' a volume of "
             f"{volume:g} m^3; give it at most that, or make the geom larger"
         )
-    actuator, capacity = placed.actuator, placed.capacity
-    low, high = model.actuator_actrange[actuator]
-    fits = low == 0.0 and abs(high / capacity - 1.0) <= _ROUNDING
-    if model.actuator_actnum[actuator] != 1 or (model.actuator_actlimited[actuator] and not fits):
-        raise ModelError(
-            f"{what} keeps {model.actuator_actnum[actuator]} states in the range {low:g} to "
-            f"{high:g}; write actdim='1', and no actrange or actrange='0 {capacity:.9g}'"
-        )
+    states = model.actuator_actnum[placed.actuator]
+    if states != 1:
+        raise ModelError(f"{what} keeps {states} states; write actdim='1', for its volume alone")
 
 
 def _locate_geom(

@@ -44,7 +44,10 @@ def find_flow(
         wanted = min(max(wanted, 0.0), capacity)
         # from the state as it is, so that one beyond its limits comes back
         volume = commands.act[ballast.acts[n]]
-        return min(max((wanted - volume) / timestep, -ballast.rates[n]), ballast.rates[n])
+        flow = (wanted - volume) / timestep
+        # what rounding leaves of it
+        flow += (wanted - (volume + flow * timestep)) / timestep
+        return min(max(flow, -ballast.rates[n]), ballast.rates[n])
 
     # at this volume, and at the one that the flow of now would bring
     if not gravity * sea.density > 0.0:

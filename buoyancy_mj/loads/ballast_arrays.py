@@ -13,8 +13,7 @@ from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.hulls.placed_ballasts import PlacedBallast
 from buoyancy_mj.kernels.arrays import empty
 from buoyancy_mj.kernels.ballast import BLADDER, COMPARTMENT, TANK, Ballast
-from buoyancy_mj.kernels.fills import Fills
-from buoyancy_mj.meshes.fills import FillCurve
+from buoyancy_mj.meshes.fills import FillCurve, pack_fills
 
 
 def gather_ballast(placed: Sequence[PlacedBallast], rows: Mapping[str, int] = {}) -> Ballast:
@@ -42,7 +41,12 @@ def gather_ballast(placed: Sequence[PlacedBallast], rows: Mapping[str, int] = {}
         openings=np.array([c.discharge * c.area if c else 0.0 for c in compartments]),
         sealed=np.array([int(c is not None and not c.vent) for c in compartments]),
         levels=np.array([int(one.has_level) for one in placed]),
-        fills=_gather_fills(placed),
+        fills=pack_fills(
+            [one.mesh for one in placed],
+            [one.holds_water for one in placed],
+            [one.curve.knots if one.holds_water else np.zeros(0) for one in placed],
+            [_list_pieces(one) for one in placed],
+        ),
     )
 
 
@@ -76,32 +80,6 @@ def _number_kind(one: PlacedBallast) -> int:
     if isinstance(one.ballast, Bladder):
         return BLADDER
     return COMPARTMENT if isinstance(one.ballast, Compartment) else TANK
-
-
-def _gather_fills(placed: Sequence[PlacedBallast]) -> Fills:
-    """The shapes of tanks; a bladder has a volume alone."""
-    curves = [one.curve if one.holds_water else None for one in placed]
-    meshes = [one.mesh if one.holds_water else None for one in placed]
-    vertex_starts = np.cumsum([0, *(len(mesh.vertices) if mesh else 0 for mesh in meshes)])
-    whole = [(mesh, start) for mesh, start in zip(meshes, vertex_starts[:-1], strict=True) if mesh]
-    return Fills(
-        volumes=np.array([one.mesh.volume for one in placed]),
-        knots=_join([curve.knots if curve else np.zeros(0) for curve in curves]),
-        pieces=_join([np.zeros((0, 36)), *map(_list_pieces, placed)]),
-        knot_starts=np.cumsum([0, *(len(curve.knots) if curve else 0 for curve in curves)]),
-        vertices=_join([np.zeros((0, 3)), *(mesh.vertices for mesh, _ in whole)]),
-        faces=_join([np.zeros((0, 3)), *(mesh.faces + start for mesh, start in whole)]).astype(
-            np.int64
-        ),
-        areas=_join([np.zeros((0, 3)), *(mesh.area_vectors for mesh, _ in whole)]),
-        vertex_starts=vertex_starts,
-        face_starts=np.cumsum([0, *(len(mesh.faces) if mesh else 0 for mesh in meshes)]),
-    )
-
-
-def _join(arrays: Sequence[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Arrays one below the other."""
-    return np.concatenate(arrays)
 
 
 def _list_pieces(one: PlacedBallast) -> NDArray[np.float64]:

@@ -2,11 +2,13 @@
 
 import dataclasses
 import functools
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from buoyancy_mj.kernels.fills import Fills
 from buoyancy_mj.meshes.mesh import TriMesh
 
 LEVELS = 48
@@ -61,6 +63,39 @@ def measure_fill(mesh: TriMesh, up: NDArray[np.float64]) -> FillCurve:
     kept = np.concatenate([[True], np.diff(table[:, 0]) > 1e-9 * table[-1, 0]])
     curve = CubicSpline(table[kept, 0], table[kept, 1:])
     return FillCurve(table[kept, 0], np.moveaxis(curve.c, 0, -1))
+
+
+def pack_fills(
+    meshes: Sequence[TriMesh],
+    filled: Sequence[bool],
+    knots: Sequence[NDArray[np.float64]] = (),
+    pieces: Sequence[NDArray[np.float64]] = (),
+) -> Fills:
+    """Tanks as kernels read them.
+
+    Args:
+        meshes: of the tanks (n).
+        filled: whether each is filled with water; of others the volume alone is kept (n).
+        knots: see `Fills.knots`; without any, levels alone can be found.
+        pieces: see `Fills.pieces`.
+    """
+    whole = [mesh if has else None for mesh, has in zip(meshes, filled, strict=True)]
+    starts = np.cumsum([0, *(len(mesh.vertices) if mesh else 0 for mesh in whole)])
+    kept = [(mesh, start) for mesh, start in zip(whole, starts[:-1], strict=True) if mesh]
+    counts = [len(one) for one in knots] or [0] * len(meshes)
+    return Fills(
+        volumes=np.array([mesh.volume for mesh in meshes]),
+        knots=np.concatenate([np.zeros(0), *knots]),
+        pieces=np.concatenate([np.zeros((0, 36)), *pieces]),
+        knot_starts=np.cumsum([0, *counts]),
+        vertices=np.concatenate([np.zeros((0, 3)), *(mesh.vertices for mesh, _ in kept)]),
+        faces=np.concatenate(
+            [np.zeros((0, 3), np.int64), *(mesh.faces + start for mesh, start in kept)]
+        ),
+        areas=np.concatenate([np.zeros((0, 3)), *(mesh.area_vectors for mesh, _ in kept)]),
+        vertex_starts=starts,
+        face_starts=np.cumsum([0, *(len(mesh.faces) if mesh else 0 for mesh in whole)]),
+    )
 
 
 def integrate_below(mesh: TriMesh, up: NDArray[np.float64], level: float) -> NDArray[np.float64]:

@@ -1,7 +1,7 @@
 """`add_ballast`: bladders, tanks and compartments, as actuators of the engine.
 
     <actuator>
-      <plugin name="aft" plugin="buoyancy_mj.ballast" site="aft" actdim="1" actrange="0 0.002">
+      <plugin name="aft" plugin="buoyancy_mj.ballast" site="aft" actdim="1">
         <config key="kind" value="tank"/>
         <config key="geom" value="aft"/>
         <config key="capacity" value="0.002"/>
@@ -109,10 +109,8 @@ def add_ballast(
     )
     actuator.plugin.name, actuator.plugin.plugin_name = name, PLUGIN
     actuator.plugin.active = True
-    if ballast.capacity is not None:
-        actuator.actlimited, actuator.actrange = 1, [0.0, ballast.capacity]
-        if not isinstance(ballast, Compartment):
-            actuator.ctrllimited, actuator.ctrlrange = 1, [0.0, ballast.capacity]
+    if ballast.capacity is not None and not isinstance(ballast, Compartment):
+        actuator.ctrllimited, actuator.ctrlrange = 1, [0.0, ballast.capacity]
     if not isinstance(ballast, Bladder):
         keep_full_inertia([_find_moving(spec, shape.parent)])
     return actuator
