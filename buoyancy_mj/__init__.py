@@ -74,8 +74,8 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
-from buoyancy_mj.vehicle.ballast import add_ballast as add_ballast
 from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
+from buoyancy_mj.vehicle.ballast import add_ballast as add_ballast
 
 __version__ = _version("buoyancy_mj")
 

@@ -194,9 +194,7 @@ class Buoyancy(ReadOnly):
                 says why.
         """
         if through == callbacks.APPLIED:
-            check_applied(
-                self.model, self.causes, augments=self._acting.load_model.augments
-            )
+            check_applied(self.model, self.causes, augments=self._acting.load_model.augments)
         with callbacks.install(self._acting, native, through=through, copies=copies):
             yield self
 

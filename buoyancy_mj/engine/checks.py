@@ -67,8 +67,8 @@ def check_applied(model: mujoco.MjModel, causes: Sequence[str], *, augments: boo
         augments: whether anything of them stands in the mass matrix.
 
     Raises:
-        ModelError: added mass or the water of tanks acts, and a sensor measures the force or torque between bodies, or
-            kinetic energy.
+        ModelError: added mass or the water of tanks acts, and a sensor measures the force or torque
+            between bodies, or kinetic energy.
     """
     sensor = mujoco.mjtSensor
     kinds = sensor.mjSENS_FORCE, sensor.mjSENS_TORQUE, sensor.mjSENS_E_KINETIC

@@ -14,8 +14,8 @@ from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.placed_ballasts import PlacedBallast, find_ballasts
 from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import conform, empty
-from buoyancy_mj.kernels.ballast import BLADDER
 from buoyancy_mj.kernels.damping import DampingArrays
+from buoyancy_mj.kernels.flooding import BLADDER
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.passes import IDS, Causes, LoadArrays, Record
 from buoyancy_mj.kernels.scratch import Scratch
@@ -147,7 +147,7 @@ def build_load_model(
     arrays = LoadArrays(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
-        bodies=np.unique([*owners, *(one.body for one in (*foils, *placed))]),
+        bodies=np.unique([*owners, *(foil.body for foil in foils), *(one.body for one in placed)]),
         sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
         damping=resolve_damping(
             damping,
@@ -180,11 +180,12 @@ def build_load_model(
 
 def _list_hulls(hulls: Sequence[Hull], bladders: Sequence[PlacedBallast]) -> HullSet:
     """The hulls, and behind them the geoms of bladders, which are submerged by themselves."""
+    solids: list[Hull | PlacedBallast] = [*hulls, *bladders]
     return HullSet(
-        [one.mesh for one in (*hulls, *bladders)],
-        frames=[one.geom for one in (*hulls, *bladders)],
-        bodies=[one.body for one in (*hulls, *bladders)],
-        turns=[one.body_from_geom for one in (*hulls, *bladders)],
+        [one.mesh for one in solids],
+        frames=[one.geom for one in solids],
+        bodies=[one.body for one in solids],
+        turns=[one.body_from_geom for one in solids],
         fills=[*(hull.fill for hull in hulls), *(1.0 for _ in bladders)],
     )
 

@@ -149,7 +149,9 @@ def parse_ballast(texts: Mapping[str, str], site: str, what: str) -> Ballasting:
             continue
         if key not in fields:
             possible = [name for name in fields if name != _OPENING]
-            raise ModelError(f"{what}, a {kind.kind}, has the key '{key}'; {choices(key, possible)}")
+            raise ModelError(
+                f"{what}, a {kind.kind}, has the key '{key}'; {choices(key, possible)}"
+            )
         is_truth = fields[key].type is bool
         values[key] = _parse_truth(texts[key]) if is_truth else _parse_number(texts[key])
     missing = [

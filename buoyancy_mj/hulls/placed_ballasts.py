@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from buoyancy_mj.errors import ModelError, choices, describe
+from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.ballasts import (
     PLUGIN,
     Ballasting,
@@ -22,11 +22,10 @@ from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
 from buoyancy_mj.hulls.plugins import read_instances
 from buoyancy_mj.hulls.references import find_named
 from buoyancy_mj.hulls.verdicts import SOLID_TYPES
-from buoyancy_mj.meshes.fills import FillCurve, find_fill
+from buoyancy_mj.meshes.fills import FillCurve, TankShape, find_fill
 from buoyancy_mj.meshes.mesh import TriMesh
-from buoyancy_mj.values import read_array, read_number
 
-_ROUNDING = 1e-6
+ROUNDING = 1e-6
 """Part of a volume by which a capacity may be beyond it: facets and texts are rounded."""
 
 
@@ -92,6 +91,28 @@ class PlacedBallast:
         x, y, z = self.up.tolist()
         return find_fill(self.mesh, (x, y, z))
 
+    def find_centroid(
+        self, volume: float, rotation: NDArray[np.float64], origin: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        """Where its water is, or the middle of a bladder's geom (3,) [m], world frame.
+
+        Args:
+            volume: of the water [m^3], above 0.
+            rotation: world_from_geom (3, 3).
+            origin: of the geom's frame (3,) [m], world frame.
+        """
+        if not self.holds_water:
+            centroid = self.mesh.centroid
+        elif self.has_level:
+            _, centroid = self._shape.find_level(rotation[2], volume)
+        else:
+            centroid = self.curve.moments(volume)[0] / volume
+        return np.asarray(rotation @ centroid + origin, float)
+
+    @functools.cached_property
+    def _shape(self) -> TankShape:
+        return TankShape(self.mesh)
+
     def water(self, volume: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """First (3,) [m^4] and second moments (3, 3) [m^5] of its water, in the frame of the body.
 
@@ -141,15 +162,13 @@ def find_ballasts(
     return tuple(one for one in placed if bodies is None or one.body in bodies)
 
 
-def place_ballast(
-    model: mujoco.MjModel, instance: int, texts: Mapping[str, str]
-) -> PlacedBallast:
+def place_ballast(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]) -> PlacedBallast:
     """The ballast of one plugin instance of a model.
 
     Raises:
         ModelError: texts that make no sense, an actuator that is not at a site or keeps another
-            number of states, a geom that is none or bounds no volume, that cannot move or moves with another
-            body than the site, or a capacity beyond its volume.
+            number of states, a geom that is none or bounds no volume, that cannot move or moves
+            with another body than the site, or a capacity beyond its volume.
         MeshError: a geom whose mesh bounds no volume.
     """
     actuator = _find_actuator(model, instance)
@@ -186,50 +205,6 @@ def place_ballast(
     return placed
 
 
-def read_volumes(
-    model: mujoco.MjModel,
-    placed: Sequence[PlacedBallast],
-    ballast: Mapping[str, float] | ArrayLike | None,
-) -> list[float]:
-    """What all ballast of a model holds [m^3], in its order.
-
-    Args:
-        model: any model.
-        placed: its ballast.
-        ballast: volumes [m^3] by name, others being empty; or the states of actuators (na,), as
-            `data.act` has them; None for empty.
-
-    Raises:
-        ModelError: an unknown name, a volume beyond the capacity, or another number of states.
-    """
-    if isinstance(ballast, Mapping):
-        names = [one.name for one in placed]
-        for name in ballast:
-            if name not in names:
-                raise ModelError(
-                    f"the model has no ballast {describe(name)}; {choices(name, names)}"
-                )
-        volumes = [ballast.get(one.name, 0.0) for one in placed]
-    elif ballast is not None:
-        states = read_array(ModelError, "ballast", ballast, (model.na,))
-        volumes = [float(states[one.state]) for one in placed]
-    else:
-        volumes = [0.0] * len(placed)
-    return [
-        min(
-            read_number(
-                ModelError,
-                f"the volume of ballast '{one.name}'",
-                volume,
-                least=0.0,
-                most=(1.0 + _ROUNDING) * one.capacity,
-            ),
-            one.capacity,
-        )
-        for one, volume in zip(placed, volumes, strict=True)
-    ]
-
-
 def _find_actuator(model: mujoco.MjModel, instance: int) -> int:
     """The actuator of a plugin instance.
 
@@ -263,7 +238,7 @@ def _check_capacity(model: mujoco.MjModel, placed: PlacedBallast, what: str) -> 
     """Refuse a capacity beyond the geom, and another number of states than one."""
     name, volume = geom_name(model, placed.geom), placed.mesh.volume
     stated = placed.ballast.capacity
-    if placed.holds_water and stated is not None and stated > (1.0 + _ROUNDING) * volume:
+    if placed.holds_water and stated is not None and stated > (1.0 + ROUNDING) * volume:
         raise ModelError(
             f"{what} has a capacity of {stated:g} m^3, and its geom '{name}' a volume of "
             f"{volume:g} m^3; give it at most that, or make the geom larger"
@@ -291,4 +266,3 @@ def _read_matrix(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
     matrix = np.empty(9)
     mujoco.mju_quat2Mat(matrix, quaternion)
     return matrix.reshape(3, 3)
-

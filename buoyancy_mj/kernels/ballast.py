@@ -21,22 +21,19 @@ from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.clip import CX, CY, CZ, VOLUME
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.fills import Fills
-from buoyancy_mj.kernels.flooding import find_flow
+from buoyancy_mj.kernels.flooding import BLADDER, find_flow
 from buoyancy_mj.kernels.inertia import add_matrix, set_to_body
 from buoyancy_mj.kernels.reaction import add_coriolis, multiply, set_motion
 from buoyancy_mj.kernels.vectors import difference, place, triple
 from buoyancy_mj.kernels.waves import add_velocity
 from buoyancy_mj.kernels.wrenches import add_wrench
 
-BLADDER, TANK, COMPARTMENT = range(3)
-"""Kinds of ballast, in `Ballast.kinds`."""
-
 
 class Ballast(NamedTuple):
     """All ballast of a model that changes under way."""
 
     kinds: Annotated[Words, ("n",)]
-    """What each is, `BLADDER` to `COMPARTMENT`."""
+    """What each is, `flooding.BLADDER` to `flooding.COMPARTMENT`."""
     bodies: Annotated[Words, ("n",)]
     """Index of the body that each moves with."""
     frames: Annotated[Words, ("n",)]
@@ -147,9 +144,7 @@ def add_ballast(
                 )
                 at = place(geoms.geom_xpos[geom], turn, cx, cy, cz)
             else:
-                at = place(
-                    origin, r, moments[0] / volume, moments[1] / volume, moments[2] / volume
-                )
+                at = place(origin, r, moments[0] / volume, moments[1] / volume, moments[2] / volume)
             _add_push(at, com, 0.0, 0.0, -sea.density * gravity * volume, out[b])
 
         # what comes aboard brings its own velocity, and takes on the body's

@@ -14,9 +14,10 @@ from buoyancy_mj.kernels import fills
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.waves import elevation
 
+BLADDER, TANK, COMPARTMENT = range(3)
+"""Kinds of ballast, in `Ballast.kinds`."""
 ATMOSPHERE = 101325.0
 """Pressure of the air [Pa] (ISO 2533)."""
-_COMPARTMENT = 2
 
 
 @njit(cache=True, error_model="numpy")
@@ -35,7 +36,7 @@ def find_flow(
     volume = min(max(commands.act[ballast.acts[n]], 0.0), capacity)
     if not timestep > 0.0:
         return 0.0
-    if ballast.kinds[n] != _COMPARTMENT:
+    if ballast.kinds[n] != COMPARTMENT:
         u = ballast.actuators[n]
         wanted = commands.ctrl[u]
         if commands.actuator_ctrllimited[u]:

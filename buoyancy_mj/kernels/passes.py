@@ -9,7 +9,6 @@ To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArra
 
 from typing import Annotated, NamedTuple
 
-import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
@@ -17,7 +16,6 @@ from buoyancy_mj.kernels import (
     ballast,
     damping,
     foils,
-    inertia,
     panels,
     pressure,
     radiation,
@@ -30,7 +28,7 @@ from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.foils import Foils
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.inertia import AddedMass
-from buoyancy_mj.kernels.multibody import PGS, Engine
+from buoyancy_mj.kernels.multibody import Engine
 from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import Sea
 
@@ -38,9 +36,6 @@ ALIVE, MODEL, DATA, WATER, SIZES, AUGMENTED, IDS = range(7)
 """Columns of `Record.ids`, and how many: whether the record is in use; addresses of its mjModel,
 mjData and water; a sum over the sizes of the model's geoms; and whether `Record.inertia` is a mass
 matrix with added mass in it."""
-UNCHANGED, AUGMENT, AUGMENT_DUAL = range(3)
-"""What `augment` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
-same for a solver of the dual problem, whose constraints must be projected anew too."""
 
 
 class LoadArrays(NamedTuple):
@@ -82,8 +77,8 @@ class Record(NamedTuple):
     centres: Annotated[Doubles, ("nbody", 4)]
     """Submerged volume of each body [m^3] and its centroid [m]."""
     heads: Annotated[Doubles, ("h", 6)]
-    """Pressure on each of them, see `pressure.press_hulls`; zeros where no model of pressure asks for
-    it."""
+    """Pressure on each of them, see `pressure.press_hulls`; zeros where no model of pressure asks
+    for it."""
     causes: Causes
     total: Annotated[Doubles, ("nbody", 6)]
     """Sum over the causes."""
@@ -279,48 +274,3 @@ LOADS = (
     add_ballast,
 )
 """All loads, in the order in which they are added."""
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def deliver(loads, engine, record):
-    """Add the sum of all loads to the engine's forces."""
-    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def augment(loads, engine, record):
-    """Add added mass and the water in tanks to the engine's mass matrix, once in each pass.
-
-    Returns:
-        `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
-    """
-    mass = engine.mass_matrix.M
-    if _is_augmented(mass, record):
-        return UNCHANGED
-    record.ids[AUGMENTED] = 0
-    wet = inertia.add_inertia(
-        loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
-    )
-    filled = ballast.add_inertia(
-        loads.ballast,
-        engine.commands.act,
-        loads.sea.density,
-        engine.bodies,
-        engine.joints,
-        engine.mass_matrix,
-    )
-    if not (wet or filled):
-        return UNCHANGED
-    record.ids[AUGMENTED] = 1
-    record.inertia[:] = mass
-    dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
-    return AUGMENT_DUAL if dual else AUGMENT
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _is_augmented(mass, record):
-    """Whether the mass matrix holds the added mass already.
-
-    The engine may go over a pass again without computing its mass matrix anew.
-    """
-    return record.ids[AUGMENTED] != 0 and np.array_equal(mass, record.inertia)

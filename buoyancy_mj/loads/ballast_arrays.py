@@ -12,7 +12,8 @@ from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.hulls.placed_ballasts import PlacedBallast
 from buoyancy_mj.kernels.arrays import empty
-from buoyancy_mj.kernels.ballast import BLADDER, COMPARTMENT, TANK, Ballast
+from buoyancy_mj.kernels.ballast import Ballast
+from buoyancy_mj.kernels.flooding import BLADDER, COMPARTMENT, TANK
 from buoyancy_mj.meshes.fills import FillCurve, pack_fills
 
 
@@ -25,9 +26,7 @@ def gather_ballast(placed: Sequence[PlacedBallast], rows: Mapping[str, int] = {}
     """
     if not placed:
         return empty(Ballast)
-    compartments = [
-        one.ballast if isinstance(one.ballast, Compartment) else None for one in placed
-    ]
+    compartments = [one.ballast if isinstance(one.ballast, Compartment) else None for one in placed]
     return Ballast(
         kinds=np.array([_number_kind(one) for one in placed]),
         bodies=np.array([one.body for one in placed]),

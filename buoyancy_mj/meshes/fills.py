@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from buoyancy_mj.kernels import fills
+from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.fills import Fills
 from buoyancy_mj.meshes.mesh import TriMesh
 
@@ -63,6 +65,30 @@ def measure_fill(mesh: TriMesh, up: NDArray[np.float64]) -> FillCurve:
     kept = np.concatenate([[True], np.diff(table[:, 0]) > 1e-9 * table[-1, 0]])
     curve = CubicSpline(table[kept, 0], table[kept, 1:])
     return FillCurve(table[kept, 0], np.moveaxis(curve.c, 0, -1))
+
+
+class TankShape:
+    """A tank in which water levels out.
+
+    Args:
+        mesh: of the tank.
+    """
+
+    def __init__(self, mesh: TriMesh) -> None:
+        self._packed = conform(pack_fills([mesh], [True]))
+
+    def find_level(
+        self, up: NDArray[np.float64], volume: float
+    ) -> tuple[float, NDArray[np.float64]]:
+        """Height [m] of the surface along `up` (3,), and the centroid (3,) [m], of some water.
+
+        Args:
+            up: the vertical along the axes of the mesh (3,).
+            volume: of the water [m^3].
+        """
+        x, y, z = map(float, up)
+        level, _, *centroid = fills.find_level(self._packed, 0, x, y, z, volume)
+        return level, np.array(centroid)
 
 
 def pack_fills(

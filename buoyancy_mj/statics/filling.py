@@ -7,7 +7,8 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from buoyancy_mj.hulls.placed_ballasts import PlacedBallast, find_ballasts, read_volumes
+from buoyancy_mj.hulls.ballast_volumes import read_volumes
+from buoyancy_mj.hulls.placed_ballasts import PlacedBallast, find_ballasts
 from buoyancy_mj.statics.tanks import VesselTank
 from buoyancy_mj.statics.vessel import Vessel, VesselHull
 from buoyancy_mj.statics.weights import Weight, add_weights
@@ -27,7 +28,7 @@ def fill_vessel(
         data: its bodies where its coordinates have them.
         origin: origin of its root body (3,) [m], world frame.
         root_from_world: rotation of that body (3, 3).
-        ballast: see `hulls.placed_ballasts.read_volumes`.
+        ballast: see `hulls.ballast_volumes.read_volumes`.
 
     Raises:
         ModelError: ballast that makes no sense.
@@ -50,9 +51,7 @@ def fill_vessel(
         weight = _weigh(one, volume, vessel.water.density, turn, start)
         weights.append(weight)
         if one.has_level:
-            tanks.append(
-                VesselTank(one.name, one.mesh, position, rotation, volume, weight.point)
-            )
+            tanks.append(VesselTank(one.name, one.mesh, position, rotation, volume, weight.point))
 
     # all from the new centre of gravity
     beside = dataclasses.replace(

@@ -79,10 +79,8 @@ class FloatingPose:
     def shift(self) -> NDArray[np.float64]:
         """From `position` to where the weight acts (3,) [m], world axes: the tanks' water moves."""
         vessel = self.vessel
-        moment = sum(
-            (tank.volume * one.shift for tank, one in zip(vessel.tanks, self.surfaces, strict=True)),
-            np.zeros(3),
-        )
+        pairs = zip(vessel.tanks, self.surfaces, strict=True)
+        moment = sum((tank.volume * surface.shift for tank, surface in pairs), np.zeros(3))
         return moment * vessel.water.density / vessel.mass if vessel.tanks else np.zeros(3)
 
     @property
@@ -93,7 +91,7 @@ class FloatingPose:
     @functools.cached_property
     def free_surface(self) -> NDArray[np.float64]:
         """Second moments of all free surfaces, each about its own centroid (2, 2) [m^4]."""
-        return np.sum([np.zeros((2, 2)), *(one.moments for one in self.surfaces)], axis=0)
+        return sum((surface.moments for surface in self.surfaces), np.zeros((2, 2)))
 
     @property
     def draft(self) -> float:

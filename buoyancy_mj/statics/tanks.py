@@ -6,11 +6,9 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.kernels import fills
-from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.clip import CENTROID
 from buoyancy_mj.kernels.waterplane import INTEGRALS
-from buoyancy_mj.meshes.fills import pack_fills
+from buoyancy_mj.meshes.fills import TankShape
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import PackedHulls
@@ -36,8 +34,8 @@ class VesselTank:
     the vessel's centre of gravity."""
 
     @functools.cached_property
-    def _shape(self) -> fills.Fills:
-        return conform(pack_fills([self.mesh], [True]))
+    def _shape(self) -> TankShape:
+        return TankShape(self.mesh)
 
     @functools.cached_property
     def _packed(self) -> PackedHulls:
@@ -50,8 +48,7 @@ class VesselTank:
             rotation: world_from_vessel (3, 3).
         """
         world_from_tank = rotation @ self.rotation
-        up = world_from_tank[2]
-        level, *_ = fills.find_level(self._shape, 0, up[0], up[1], up[2], self.volume)
+        level, _ = self._shape.find_level(world_from_tank[2], self.volume)
 
         # with the surface at the height of 0, and x and y of the tank's frame
         origin = np.array([[0.0, 0.0, -level]])

@@ -21,9 +21,7 @@ class Weight(NamedTuple):
     """Its inertia about that (3, 3) [kg m^2]."""
 
 
-def add_weights(
-    vessel: Vessel, weights: Sequence[Weight]
-) -> tuple[NDArray[np.float64], Vessel]:
+def add_weights(vessel: Vessel, weights: Sequence[Weight]) -> tuple[NDArray[np.float64], Vessel]:
     """How far weights move the centre of gravity (3,) [m], and a copy of the vessel with them.
 
     What weighs nothing has no centre of gravity, and keeps that of its mass.
@@ -52,7 +50,9 @@ def add_weights(
             dataclasses.replace(hull, position=hull.position - shift) for hull in vessel.hulls
         ),
         tanks=tuple(
-            dataclasses.replace(tank, position=tank.position - shift, centroid=tank.centroid - shift)
+            dataclasses.replace(
+                tank, position=tank.position - shift, centroid=tank.centroid - shift
+            )
             for tank in vessel.tanks
         ),
         sites={name: point - shift for name, point in vessel.sites.items()},

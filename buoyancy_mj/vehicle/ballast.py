@@ -104,9 +104,7 @@ def add_ballast(
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=name, plugin_name=PLUGIN, active=True)
     plugin.config = write_ballast(ballast, shape.name)
-    actuator = spec.add_actuator(
-        name=name, trntype=mujoco.mjtTrn.mjTRN_SITE, target=site, actdim=1
-    )
+    actuator = spec.add_actuator(name=name, trntype=mujoco.mjtTrn.mjTRN_SITE, target=site, actdim=1)
     actuator.plugin.name, actuator.plugin.plugin_name = name, PLUGIN
     actuator.plugin.active = True
     if ballast.capacity is not None and not isinstance(ballast, Compartment):

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 from numba import int64
 
-from buoyancy_mj.kernels.ballast import BLADDER, Ballast, held_volume
+from buoyancy_mj.kernels.ballast import Ballast, held_volume
 from buoyancy_mj.kernels.entries.views import view, view_engine
-from buoyancy_mj.kernels.flooding import find_flow
+from buoyancy_mj.kernels.flooding import BLADDER, find_flow
 from buoyancy_mj.kernels.multibody import Engine, downward_gravity
 from buoyancy_mj.kernels.sea import Sea
 from buoyancy_mj.kernels.vehicle.devices import Device
@@ -29,9 +29,9 @@ def advance(model: int64, data: int64, device: int64) -> int64:
     engine = view_engine(model, data, known.device.offsets, Engine)
     equipment = view_engine(model, data, known.device.offsets, Equipment)
     sea, ballast = view(known.device.sea, Sea), known.ballast
-    if not sea.density > 0.0 and ballast.kinds[0] != BLADDER:
-        if held_volume(ballast, 0, engine.commands.act) > 0.0:
-            return known.dry_text
+    held = held_volume(ballast, 0, engine.commands.act)
+    if held > 0.0 and not sea.density > 0.0 and ballast.kinds[0] != BLADDER:
+        return known.dry_text
     gravity = downward_gravity(engine.option.gravity, engine.option.disableflags)
     equipment.actuators.act_dot[ballast.acts[0]] = find_flow(
         ballast,
