@@ -23,6 +23,9 @@ from buoyancy_mj.errors import RecordingError as RecordingError
 from buoyancy_mj.errors import SceneError as SceneError
 from buoyancy_mj.errors import SweepError as SweepError
 from buoyancy_mj.errors import WaterError as WaterError
+from buoyancy_mj.hulls.ballasts import Bladder as Bladder
+from buoyancy_mj.hulls.ballasts import Compartment as Compartment
+from buoyancy_mj.hulls.ballasts import Tank as Tank
 from buoyancy_mj.hulls.selection import Selection as Selection
 from buoyancy_mj.kernels.caches import NOTICES as _NOTICES
 from buoyancy_mj.loads.coefficients import Coefficients as Coefficients
@@ -71,6 +74,7 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+from buoyancy_mj.vehicle.ballast import add_ballast as add_ballast
 from buoyancy_mj.vehicle.sensors.adding import add_sensor as add_sensor
 from buoyancy_mj.vehicle.sensors.adding import find_streams as find_streams
 from buoyancy_mj.vehicle.sensors.altimeter import Altimeter as Altimeter

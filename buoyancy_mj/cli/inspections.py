@@ -17,7 +17,7 @@ from buoyancy_mj.cli.flags import (
     check_recording_name,
     parse_still_water,
 )
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import ModelError, describe
 from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.inspection import json_report, report
@@ -41,6 +41,13 @@ def inspect_(
         str | None,
         typer.Option(
             metavar="SOURCE", help=f"Report added mass: {', '.join(SOURCES[:-1])}; see the guide."
+        ),
+    ] = None,
+    ballast: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME=VOLUME",
+            help="Fill a tank, a compartment or a bladder: aft=0.002 [m^3]; may be repeated.",
         ),
     ] = None,
     plot: Annotated[
@@ -76,6 +83,7 @@ def inspect_(
             selection=selection.selection,
             title=path.stem,
             added_mass=added_mass,
+            ballast=_parse_volumes(ballast or []),
         )
 
     # the report
@@ -97,6 +105,22 @@ def inspect_(
         _write_repaired(spec, compiled, inspection, repair)
     if any(part.displaces and part.mesh is None for part in inspection.geoms):
         raise typer.Exit(1)
+
+
+def _parse_volumes(words: list[str]) -> dict[str, float]:
+    """Volumes [m^3] by name, of words NAME=VOLUME."""
+    volumes = {}
+    for word in words:
+        name, _, volume = word.rpartition("=")
+        try:
+            volumes[name] = float(volume)
+        except ValueError:
+            name = ""
+        if not name:
+            raise ModelError(
+                f"--ballast is {describe(word)}; write NAME=VOLUME [m^3], as aft=0.002"
+            )
+    return volumes
 
 
 def _draw_plots(inspection: Inspection, folder: Path) -> None:

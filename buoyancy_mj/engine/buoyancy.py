@@ -196,7 +196,7 @@ class Buoyancy(ReadOnly):
                 says why.
         """
         if through == callbacks.APPLIED:
-            check_applied(self.model, self.causes)
+            check_applied(self.model, self.causes, augments=self._acting.load_model.augments)
         link = callbacks.install(self._acting, native, through=through, copies=copies)
         with link, keep_installed(self):
             yield self

@@ -54,7 +54,7 @@ def check_sleep(model: mujoco.MjModel) -> None:
         )
 
 
-def check_applied(model: mujoco.MjModel, causes: Sequence[str]) -> None:
+def check_applied(model: mujoco.MjModel, causes: Sequence[str], *, augments: bool) -> None:
     """Refuse water in `xfrc_applied` that a sensor of the model would misread.
 
     The part of added mass that goes with accelerations stands in the mass matrix. MuJoCo's
@@ -64,16 +64,23 @@ def check_applied(model: mujoco.MjModel, causes: Sequence[str]) -> None:
     Args:
         model: the model.
         causes: names of the loads that act.
+        augments: whether anything of them stands in the mass matrix.
 
     Raises:
-        ModelError: added mass acts, and a sensor measures the force or torque between bodies, or
-            kinetic energy.
+        ModelError: added mass or the water of tanks acts, and a sensor measures the force or torque
+            between bodies, or kinetic energy.
     """
     sensor = mujoco.mjtSensor
     kinds = sensor.mjSENS_FORCE, sensor.mjSENS_TORQUE, sensor.mjSENS_E_KINETIC
     sensors = np.flatnonzero(np.isin(model.sensor_type, [int(kind) for kind in kinds]))
-    if "added_mass" in causes and len(sensors):
+    if augments and len(sensors):
         name = model.sensor(sensors[0]).name or f"number {sensors[0]}"
+        if "added_mass" not in causes:
+            raise ModelError(
+                f"the sensor '{name}' would not read the water in tanks, whose inertia stands in "
+                "the mass matrix and not in xfrc_applied: leave out the sensor, or let the water "
+                "act through qfrc_passive"
+            )
         raise ModelError(
             f"the sensor '{name}' would not read the added mass, which stands in the mass matrix "
             "and not in xfrc_applied: leave out the sensor, or the added mass (added_mass='none')"

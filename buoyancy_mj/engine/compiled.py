@@ -77,7 +77,6 @@ class CompiledWater:
             "a copy of the model has geoms of other sizes than the model of the water: "
             "add_water(spec) makes water that is measured for each"
         )
-        causes = load_model.causes
         links = Links(
             model=model._address,
             signature=model.signature,
@@ -86,7 +85,7 @@ class CompiledWater:
             sizes_text=ctypes.addressof(self._sizes_text),
             act=compile_kernel(passive.act).address,
             submerge=self._submerge.address,
-            augment=compile_kernel(loads.augment).address if "added_mass" in causes else 0,
+            augment=compile_kernel(loads.augment).address if load_model.augments else 0,
             error=layout.symbol("mju_error"),
             gravity_text=ctypes.addressof(self._text),
             factor=layout.symbol("mj_factorM"),

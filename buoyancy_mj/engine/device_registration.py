@@ -15,6 +15,7 @@ from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.device_kinds import KINDS, DeviceKind
 from buoyancy_mj.engine.devices import resolve_device
 from buoyancy_mj.engine.plugin_struct import register_plugin
+from buoyancy_mj.hulls.plugins import note_plugin
 from buoyancy_mj.kernels.entries import device_hooks
 from buoyancy_mj.kernels.entries.closures import Closure
 from buoyancy_mj.kernels.entries.views import Table
@@ -34,6 +35,7 @@ def register_kind(kind: DeviceKind) -> None:
         functions["nsensordata"] = hooks.count(device_hooks.count_readings, kind.numbers)
     slot = register_plugin(kind.plugin, kind.keys, int(kind.capability), int(kind.stage), functions)
     KINDS[slot] = kind
+    note_plugin(kind.plugin, slot, kind.keys)
 
 
 class _Hooks:

@@ -11,14 +11,17 @@ from buoyancy_mj.errors import MethodError
 from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.hulls.placed_ballasts import PlacedBallast, find_ballasts
 from buoyancy_mj.kernels import clip, passes
 from buoyancy_mj.kernels.arrays import conform, empty
 from buoyancy_mj.kernels.damping import DampingArrays
+from buoyancy_mj.kernels.flooding import BLADDER
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.passes import IDS, Causes, LoadArrays, Record
 from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.loads.added_mass import resolve_added_mass
+from buoyancy_mj.loads.ballast_arrays import check_ballast, gather_ballast
 from buoyancy_mj.loads.damping_arrays import resolve_damping
 from buoyancy_mj.loads.foil_arrays import PlacedFoil, find_foils, gather_foils
 from buoyancy_mj.settings.settings import Settings
@@ -54,6 +57,7 @@ class LoadModel:
             "foil": len(self.arrays.foils.bodies) > 0,
             "added_mass": len(self.arrays.added_mass.bodies) > 0,
             "slamming": self.arrays.added_mass.slamming != 0,
+            "ballast": len(self.arrays.ballast.bodies) > 0,
         }
         return tuple(cause for cause in CAUSES if acts.get(cause, True))
 
@@ -67,8 +71,14 @@ class LoadModel:
             passes.add_radiation: "radiation" in self.causes,
             passes.add_foils: "foil" in self.causes,
             passes.add_reaction: "added_mass" in self.causes,
+            passes.add_ballast: "ballast" in self.causes,
         }
         return tuple(load for load in passes.LOADS if acts.get(load, True))
+
+    @functools.cached_property
+    def augments(self) -> bool:
+        """Whether the mass matrix gets added mass, or the water of tanks."""
+        return "added_mass" in self.causes or bool((self.arrays.ballast.kinds != BLADDER).any())
 
     @functools.cached_property
     def has_wave_pressure(self) -> bool:
@@ -93,7 +103,7 @@ class LoadModel:
             bodies: how many the model has.
             inertias: elements of its mass matrix.
         """
-        hulls = len(self.arrays.owners)
+        hulls = len(self.packed.volumes)
         return Record(
             wet=np.zeros((hulls, clip.COLUMNS)),
             centres=np.zeros((bodies, 4)),
@@ -102,7 +112,7 @@ class LoadModel:
                 *(np.zeros((bodies if cause in self.causes else 0, 6)) for cause in CAUSES)
             ),
             total=np.zeros((bodies, 6)),
-            inertia=np.zeros(inertias if "added_mass" in self.causes else 0),
+            inertia=np.zeros(inertias if self.augments else 0),
             instant=np.zeros(1),
             xipos=np.zeros((bodies, 3)),
             ids=np.zeros(IDS, np.int64),
@@ -127,21 +137,17 @@ def build_load_model(
     sizes = model.geom_size.tobytes()
     hulls = find_hulls(model, settings.selection, bodies)
     owners = np.array([hull.body for hull in hulls])
-    hull_set = HullSet(
-        [hull.mesh for hull in hulls],
-        frames=[hull.geom for hull in hulls],
-        bodies=owners,
-        turns=[hull.body_from_geom for hull in hulls],
-        fills=[hull.fill for hull in hulls],
-    )
-    packed = settings.method.pack(hull_set, water)
+    placed = find_ballasts(model, bodies)
+    check_ballast(model, placed, hulls)
+    bladders = [one for one in placed if not one.holds_water]
+    packed = settings.method.pack(_list_hulls(hulls, bladders), water)
 
     # what acts on them
     foils = find_foils(model, bodies)
     arrays = LoadArrays(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
-        bodies=np.unique([*owners, *(foil.body for foil in foils)]),
+        bodies=np.unique([*owners, *(foil.body for foil in foils), *(one.body for one in placed)]),
         sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
         damping=resolve_damping(
             damping,
@@ -157,6 +163,9 @@ def build_load_model(
         added_mass=resolve_added_mass(
             model, hulls, water.density, settings.added_mass, foils, slamming=settings.slamming
         ),
+        ballast=gather_ballast(
+            placed, {one.name: len(hulls) + i for i, one in enumerate(bladders)}
+        ),
     )
     if arrays.damping.radiates and not isinstance(packed, PackedHulls):
         radiating = arrays.damping.bodies[arrays.damping.radiation.any(axis=1)]
@@ -167,6 +176,18 @@ def build_load_model(
             "Damping(radiation=False), in a scene damping.radiation = false"
         )
     return LoadModel(hulls, sizes, packed, conform(arrays))
+
+
+def _list_hulls(hulls: Sequence[Hull], bladders: Sequence[PlacedBallast]) -> HullSet:
+    """The hulls, and behind them the geoms of bladders, which are submerged by themselves."""
+    solids: list[Hull | PlacedBallast] = [*hulls, *bladders]
+    return HullSet(
+        [one.mesh for one in solids],
+        frames=[one.geom for one in solids],
+        bodies=[one.body for one in solids],
+        turns=[one.body_from_geom for one in solids],
+        fills=[*(hull.fill for hull in hulls), *(1.0 for _ in bladders)],
+    )
 
 
 def _leave_out_foils(

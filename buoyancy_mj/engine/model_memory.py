@@ -19,7 +19,8 @@ MODEL_ARRAYS = (
     "body_dofnum", "jnt_type", "jnt_bodyid", "M_rownnz",
     "eq_type", "eq_objtype", "eq_obj1id", "eq_obj2id", "eq_active0", "site_bodyid",
     "text_adr", "text_size", "text_data", "numeric_adr", "numeric_size", "numeric_data",
-    "names", "plugin", "plugin_attr",
+    "names", "plugin", "plugin_attr", "plugin_attradr",
+    "actuator_plugin", "actuator_trntype", "actuator_trnid", "actuator_actadr", "actuator_actnum",
 )  # fmt: skip
 """Arrays of mjModel from which the hulls, their loads and the room for them are made.
 
@@ -33,6 +34,8 @@ DEVICE_ARRAYS = (
     "actuator_plugin", "actuator_trntype", "actuator_trnid", "actuator_gear", "actuator_ctrlrange",
     "actuator_ctrllimited", "actuator_actadr", "actuator_actnum", "actuator_ctrladr",
     "actuator_outadr", "actuator_forcelimited", "actuator_delay",
+    "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
+    "body_dofnum", "jnt_bodyid",
     "sensor_plugin", "sensor_objtype", "sensor_objid", "sensor_adr", "sensor_dim",
     "plugin_stateadr", "plugin_statenum",
     "numeric_adr", "numeric_size", "numeric_data", "text_adr", "text_size", "text_data",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.engine.load_model import LoadModel
-from buoyancy_mj.kernels import passes
+from buoyancy_mj.kernels import delivery, passes
 from buoyancy_mj.kernels.arrays import gather
 from buoyancy_mj.kernels.multibody import Engine
 from buoyancy_mj.kernels.passes import DATA, PassArrays, Record
@@ -87,7 +87,7 @@ def apply(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, las
     if np.array_equal(passive, last.after):
         passive[:] = last.before
     last.before[:] = passive
-    passes.deliver(load_model.arrays, _read_engine(model, data), last.record)
+    delivery.deliver(load_model.arrays, _read_engine(model, data), last.record)
     last.after[:] = passive
     _augment(load_model, model, data, last.record)
 
@@ -101,16 +101,16 @@ def augment(load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, l
 def _augment(
     load_model: LoadModel, model: mujoco.MjModel, data: mujoco.MjData, record: Record
 ) -> None:
-    """Add the added mass to the mass matrix, and let MuJoCo take up what was changed."""
-    if "added_mass" not in load_model.causes:
+    """Add added mass and tanks to the mass matrix, and let MuJoCo take up what was changed."""
+    if not load_model.augments:
         return
-    done = passes.augment(load_model.arrays, _read_engine(model, data), record)
-    if done != passes.UNCHANGED:
+    done = delivery.augment(load_model.arrays, _read_engine(model, data), record)
+    if done != delivery.UNCHANGED:
         mujoco.mj_factorM(model, data)
         # a control callback comes after the kinetic energy
         if model.opt.enableflags & mujoco.mjtEnableBit.mjENBL_ENERGY:
             mujoco.mj_energyVel(model, data)
-    if done == passes.AUGMENT_DUAL:
+    if done == delivery.AUGMENT_DUAL:
         mujoco.mj_projectConstraint(model, data)
 
 

@@ -27,12 +27,14 @@ def read_loads(
         centre_of_mass: of the floating bodies (3,) [m], world frame.
     """
     hulls, owners = load_model.hulls, load_model.arrays.owners
-    wet, centres, rows = record.wet.copy(), record.centres.copy(), record.total.copy()
+    # without the rows of bladders, which count to the ballast
+    wet, heads = record.wet[: len(hulls)].copy(), record.heads[: len(hulls)]
+    centres, rows = record.centres.copy(), record.total.copy()
     xipos, weight = data.xipos, load_model.arrays.sea.density * gravity
 
     # each hull
     if load_model.has_wave_pressure:
-        force, about = weight * record.heads[:, :3], weight * record.heads[:, 3:]
+        force, about = weight * heads[:, :3], weight * heads[:, 3:]
         origins = data.geom_xpos[[hull.geom for hull in hulls]]
         torque = about + np.cross(origins - xipos[owners], force)
     else:

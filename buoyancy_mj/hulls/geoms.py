@@ -135,6 +135,15 @@ def read_geom_mesh(
     return primitive.vertices, primitive.faces
 
 
+def build_mesh(model: mujoco.MjModel, geom: int) -> TriMesh:
+    """The mesh of one geom, repaired.
+
+    Raises:
+        MeshError: a mesh that bounds no volume; the message names the geom.
+    """
+    return _build_mesh(model, geom, [geom], {}, {})
+
+
 def find_sharing(model: mujoco.MjModel, geom: int, geoms: Sequence[int]) -> list[int]:
     """Those of `geoms` that have the mesh of a geom."""
     of_mesh = (model.geom_type == _MESH) & (model.geom_dataid == model.geom_dataid[geom])

@@ -10,12 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning
+from buoyancy_mj.hulls.ballast_volumes import read_volumes
 from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.geoms import build_hulls
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.overlaps import OVERLAP
 from buoyancy_mj.hulls.patterns import parse_fills, parse_shapes
+from buoyancy_mj.hulls.placed_ballasts import PlacedBallast, find_ballasts
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.hulls.tethers import list_roots
 from buoyancy_mj.hulls.verdicts import judge_geoms
@@ -55,6 +57,8 @@ class Inspection:
     """Hulls of different bodies that overlap."""
     foils: tuple[PlacedFoil, ...]
     """Its foils: fins, rudders, keels and wings."""
+    ballast: tuple[tuple[PlacedBallast, float], ...]
+    """Its bladders, tanks and compartments, and what each holds [m^3]."""
     vessels: tuple[VesselInspection, ...]
     """Each vessel: a kinematic tree with hulls, or what welds and connects hold together."""
     problems: tuple[str, ...]
@@ -70,6 +74,7 @@ def inspect_model(
     selection: Selection = Selection(),
     title: str = "model",
     added_mass: str | Mapping[str, ArrayLike] | None = None,
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> Inspection:
     """Inspect a model; a mesh that is refused is named and left out, and the rest goes on.
 
@@ -80,10 +85,12 @@ def inspect_model(
         title: title of the report.
         added_mass: where added mass comes from that is to be reported, as `Buoyancy` takes it; None
             to report none.
+        ballast: what tanks, compartments and bladders hold: volumes [m^3] by name, or the states of
+            actuators (na,), as `data.act`; None for empty.
 
     Raises:
-        ModelError: no geom displaces water, or the selection, the added mass or a foil makes no
-            sense.
+        ModelError: no geom displaces water, or the selection, the added mass, a foil or ballast
+            makes no sense.
     """
     water = water or Water()
 
@@ -97,12 +104,14 @@ def inspect_model(
         for verdict in verdicts
     )
     foils = find_foils(model)
+    placed = find_ballasts(model)
+    held = tuple(zip(placed, read_volumes(model, placed, ballast), strict=True))
     problems = [geom.problem for geom in geoms if geom.problem]
     sound = [
         verdict.geom for verdict, geom in zip(verdicts, geoms, strict=True) if geom.mesh is not None
     ]
     if not sound:
-        return Inspection(title, water, geoms, (), foils, (), tuple(problems))
+        return Inspection(title, water, geoms, (), foils, held, (), tuple(problems))
 
     # the hulls; the report names repairs with the meshes, so they are no problems here
     hulls, notices = _build_hulls(model, sound, forms, fills)
@@ -113,7 +122,7 @@ def inspect_model(
     vessels = []
     for root in _find_roots(model, hulls):
         try:
-            vessel, notices_of_vessel = _build_vessel(model, hulls, water, root)
+            vessel, notices_of_vessel = _build_vessel(model, hulls, water, root, ballast)
             refused = _list_refused(vessel, geoms)
             vessels.append(inspect_vessel(vessel, hulls, refused, notices_of_vessel))
         except BuoyancyError as error:
@@ -130,6 +139,7 @@ def inspect_model(
         geoms=geoms,
         overlaps=_find_overlaps(model, hulls),
         foils=foils,
+        ballast=held,
         vessels=tuple(vessels),
         problems=(*problems, *notices),
         added_mass=found,
@@ -165,12 +175,16 @@ def _find_added_mass(
 
 
 def _build_vessel(
-    model: mujoco.MjModel, hulls: Sequence[Hull], water: Water, root: str
+    model: mujoco.MjModel,
+    hulls: Sequence[Hull],
+    water: Water,
+    root: str,
+    ballast: Mapping[str, float] | ArrayLike | None,
 ) -> tuple[Vessel, list[str]]:
     """The vessel with a root body, and the warnings that came with it."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always", BuoyancyWarning)
-        vessel = build_vessel_from_hulls(model, hulls, water, body=root)
+        vessel = build_vessel_from_hulls(model, hulls, water, body=root, ballast=ballast)
     return vessel, [str(entry.message) for entry in caught]
 
 

@@ -33,6 +33,15 @@ def to_json(inspection: Inspection) -> dict[str, Any]:
             for one, other, volume in inspection.overlaps
         ],
         "foils": [_convert_foil(foil) for foil in inspection.foils],
+        "ballast": [
+            {
+                "name": one.name,
+                "kind": one.ballast.kind,
+                "capacity": one.capacity,
+                "volume": volume,
+            }
+            for one, volume in inspection.ballast
+        ],
         "floating": [_convert_vessel(vessel) for vessel in inspection.vessels],
         "added_mass": {
             body: _convert(_read_fields(estimate))

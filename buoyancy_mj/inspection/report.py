@@ -8,6 +8,7 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from buoyancy_mj.hulls.placed_ballasts import PlacedBallast
 from buoyancy_mj.inspection.geom_sections import describe_geoms, describe_meshes
 from buoyancy_mj.inspection.inspection import Inspection, Overlap
 from buoyancy_mj.inspection.tables import Section, format_degrees, format_number
@@ -26,6 +27,8 @@ def list_sections(inspection: Inspection) -> tuple[Section, ...]:
         sections.append(_describe_overlaps(inspection.overlaps))
     if inspection.foils:
         sections.append(_describe_foils(inspection.foils))
+    if inspection.ballast:
+        sections.append(_describe_ballast(inspection.ballast))
     for vessel in inspection.vessels:
         sections += describe_vessel(vessel, alone=len(inspection.vessels) == 1)
     if inspection.added_mass:
@@ -70,6 +73,23 @@ def _describe_overlaps(overlaps: Sequence[Overlap]) -> Section:
         title="Overlaps between bodies",
         header=("hull", "hull", "litres counted twice"),
         rows=tuple((one, other, format_number(1e3 * volume)) for one, other, volume in overlaps),
+    )
+
+
+def _describe_ballast(ballast: Sequence[tuple[PlacedBallast, float]]) -> Section:
+    """Bladders, tanks and compartments, and what they hold."""
+    return Section(
+        title="Ballast systems",
+        header=("name", "kind", "capacity [l]", "holds [l]"),
+        rows=tuple(
+            (
+                one.name,
+                one.ballast.kind,
+                format_number(1e3 * one.capacity),
+                format_number(1e3 * volume),
+            )
+            for one, volume in ballast
+        ),
     )
 
 

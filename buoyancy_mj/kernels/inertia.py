@@ -51,7 +51,7 @@ def add_inertia(
 
     Returns whether any body was wet.
     """
-    p, g, half, u = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6)), np.empty(6)
+    p, g, half = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
     changed = False
     for n in range(added_mass.bodies.shape[0]):
         b = added_mass.bodies[n]
@@ -59,17 +59,27 @@ def add_inertia(
         if not share > 0.0:
             continue
         changed = True
-        set_to_body(bodies, b, p)
-        _transform(added_mass.matrices[n], p, share, half, g)
-        i = last_dof(joints, b)
-        while i >= 0:
-            for k in range(6):
-                u[k] = 0.0
-                for m in range(6):
-                    u[k] += g[k, m] * joints.cdof[i, m]
-            _add_row(joints, mass_matrix, i, u)
-            i = joints.dof_parentid[i]
+        add_matrix(added_mass.matrices[n], share, bodies, joints, b, p, half, g, mass_matrix)
     return changed
+
+
+@njit(cache=True, error_model="numpy")
+def add_matrix(matrix, share, bodies, joints, b, p, half, g, mass_matrix):
+    """Add J^T A J of one body to the mass matrix, for a share of the matrix A, row by row (36,).
+
+    A is along the axes of the body, about its origin; `p`, `half` and `g` (6, 6) are scratch.
+    """
+    u = np.empty(6)
+    set_to_body(bodies, b, p)
+    _transform(matrix, p, share, half, g)
+    i = last_dof(joints, b)
+    while i >= 0:
+        for k in range(6):
+            u[k] = 0.0
+            for m in range(6):
+                u[k] += g[k, m] * joints.cdof[i, m]
+        _add_row(joints, mass_matrix, i, u)
+        i = joints.dof_parentid[i]
 
 
 @njit(cache=True, error_model="numpy")

@@ -99,6 +99,21 @@ class Equalities(NamedTuple):
     """Whether each acts now."""
 
 
+class Commands(NamedTuple):
+    """What ballast is told, what it holds, and where it opens."""
+
+    act: Annotated[Doubles, "mjData", ("na",)]
+    """States of the actuators."""
+    ctrl: Annotated[Doubles, "mjData", ("nu",)]
+    """Commands."""
+    actuator_ctrllimited: Annotated[Truths, "mjModel", ("nu",)]
+    """Whether the range of commands holds."""
+    actuator_ctrlrange: Annotated[Doubles, "mjModel", ("nu", 2)]
+    """Least and most command."""
+    site_xpos: Annotated[Doubles, "mjData", ("nsite", 3)]
+    """Origins of the sites [m]."""
+
+
 class Engine(NamedTuple):
     """All that a pass of the water reads of the engine, and the two arrays that it writes to."""
 
@@ -110,6 +125,7 @@ class Engine(NamedTuple):
     geoms: Geoms
     mass_matrix: MassMatrix
     equalities: Equalities
+    commands: Commands
     qfrc_passive: Annotated[Doubles, "mjData", ("nv",)]
     """Generalized passive forces, which the water's are added to."""
 

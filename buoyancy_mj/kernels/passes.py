@@ -9,14 +9,13 @@ To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArra
 
 from typing import Annotated, NamedTuple
 
-import numpy as np
 from numba import njit
 from numba.extending import register_jitable
 
 from buoyancy_mj.kernels import (
+    ballast,
     damping,
     foils,
-    inertia,
     panels,
     pressure,
     radiation,
@@ -24,11 +23,12 @@ from buoyancy_mj.kernels import (
     wrenches,
 )
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.ballast import Ballast
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.foils import Foils
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.inertia import AddedMass
-from buoyancy_mj.kernels.multibody import PGS, Engine
+from buoyancy_mj.kernels.multibody import Engine
 from buoyancy_mj.kernels.scratch import Scratch
 from buoyancy_mj.kernels.sea import Sea
 
@@ -36,9 +36,6 @@ ALIVE, MODEL, DATA, WATER, SIZES, AUGMENTED, IDS = range(7)
 """Columns of `Record.ids`, and how many: whether the record is in use; addresses of its mjModel,
 mjData and water; a sum over the sizes of the model's geoms; and whether `Record.inertia` is a mass
 matrix with added mass in it."""
-UNCHANGED, AUGMENT, AUGMENT_DUAL = range(3)
-"""What `augment` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
-same for a solver of the dual problem, whose constraints must be projected anew too."""
 
 
 class LoadArrays(NamedTuple):
@@ -48,11 +45,12 @@ class LoadArrays(NamedTuple):
     owners: Annotated[Words, ("h",)]
     """Body of each hull."""
     bodies: Annotated[Words, ("b",)]
-    """Bodies that have hulls or foils."""
+    """Bodies that have hulls, foils or ballast."""
     sea: Sea
     damping: DampingArrays
     foils: Foils
     added_mass: AddedMass
+    ballast: Ballast
 
 
 class Causes(NamedTuple):
@@ -68,23 +66,24 @@ class Causes(NamedTuple):
     foil: Annotated[Doubles, ("nbody", 6)]
     added_mass: Annotated[Doubles, ("nbody", 6)]
     slamming: Annotated[Doubles, ("nbody", 6)]
+    ballast: Annotated[Doubles, ("nbody", 6)]
 
 
 class Record(NamedTuple):
     """What a pass leaves."""
 
     wet: Annotated[Doubles, ("h", 8)]
-    """Submersion of each hull, see `clip.submerge_hulls`."""
+    """Submersion of each hull, and of the geoms of bladders, see `clip.submerge_hulls`."""
     centres: Annotated[Doubles, ("nbody", 4)]
     """Submerged volume of each body [m^3] and its centroid [m]."""
     heads: Annotated[Doubles, ("h", 6)]
-    """Pressure on each hull, see `pressure.press_hulls`; zeros where no model of pressure asks for
-    it."""
+    """Pressure on each of them, see `pressure.press_hulls`; zeros where no model of pressure asks
+    for it."""
     causes: Causes
     total: Annotated[Doubles, ("nbody", 6)]
     """Sum over the causes."""
     inertia: Annotated[Doubles, ("nC",)]
-    """The mass matrix with the added mass in it, as the last pass left it."""
+    """The mass matrix with added mass and the water of tanks in it, as the last pass left it."""
     instant: Annotated[Doubles, (1,)]
     """Time of the pass [s]."""
     xipos: Annotated[Doubles, ("nbody", 3)]
@@ -244,6 +243,26 @@ def add_reaction(arrays):
     )
 
 
+@register_jitable
+def add_ballast(arrays):
+    """Bladders, and the water in tanks and compartments."""
+    loads, engine, record = arrays.loads, arrays.engine, arrays.record
+    ballast.add_ballast(
+        loads.ballast,
+        engine.commands,
+        engine.bodies,
+        engine.joints,
+        engine.geoms,
+        loads.sea,
+        engine.time,
+        engine.option.timestep,
+        arrays.gravity,
+        record.wet,
+        record.heads,
+        record.causes.ballast,
+    )
+
+
 LOADS = (
     add_buoyancy,
     add_wave_pressure,
@@ -252,41 +271,6 @@ LOADS = (
     add_radiation,
     add_foils,
     add_reaction,
+    add_ballast,
 )
 """All loads, in the order in which they are added."""
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def deliver(loads, engine, record):
-    """Add the sum of all loads to the engine's forces."""
-    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def augment(loads, engine, record):
-    """Add the added mass of what is wet to the engine's mass matrix, once in each pass.
-
-    Returns:
-        `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
-    """
-    mass = engine.mass_matrix.M
-    if _is_augmented(mass, record):
-        return UNCHANGED
-    record.ids[AUGMENTED] = 0
-    if not inertia.add_inertia(
-        loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
-    ):
-        return UNCHANGED
-    record.ids[AUGMENTED] = 1
-    record.inertia[:] = mass
-    dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
-    return AUGMENT_DUAL if dual else AUGMENT
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _is_augmented(mass, record):
-    """Whether the mass matrix holds the added mass already.
-
-    The engine may go over a pass again without computing its mass matrix anew.
-    """
-    return record.ids[AUGMENTED] != 0 and np.array_equal(mass, record.inertia)

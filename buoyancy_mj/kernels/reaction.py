@@ -55,7 +55,7 @@ def add_reaction(
 
         # how the body moves, how fast its wet share grows, and how it moves through the water
         set_to_body(bodies, b, p)
-        _set_motion(bodies, joints, b, p, v, rate)
+        set_motion(bodies, joints, b, p, v, rate)
         own = hulls[hull_starts[n] : hull_starts[n + 1]]
         place, r = bodies.xpos[b], bodies.xmat[b]
         growth = set_gradient(own, wet, volume, sea.level, sea.waves, time, r, place, gradient)
@@ -63,9 +63,9 @@ def add_reaction(
         _subtract_water(sea, time, r, triple(centres, b, CX), v, rate)
 
         # what a share that stays brings
-        _multiply(matrix, rate, f)
-        _multiply(matrix, v, momentum)
-        _add_coriolis(v, momentum, f)
+        multiply(matrix, rate, f)
+        multiply(matrix, v, momentum)
+        add_coriolis(v, momentum, f)
         for i in range(6):
             f[i] *= -share
 
@@ -85,7 +85,7 @@ def add_reaction(
 
 
 @njit(cache=True, error_model="numpy")
-def _set_motion(bodies, joints, b, p, v, rate):
+def set_motion(bodies, joints, b, p, v, rate):
     """Write a body's velocity along its axes, and what the joints' velocities add to its rate."""
     spin0 = spin1 = spin2 = spin3 = spin4 = spin5 = 0.0
     i = last_dof(joints, b)
@@ -139,7 +139,7 @@ def _dot(x, y):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _multiply(matrix, x, out):
+def multiply(matrix, x, out):
     """Write a matrix, row by row (36,), times a vector (6,) to `out` (6,)."""
     for i in range(6):
         total = 0.0
@@ -149,7 +149,7 @@ def _multiply(matrix, x, out):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _add_coriolis(v, momentum, f):
+def add_coriolis(v, momentum, f):
     """Add C(v) v = (w x p, v x p + w x h) to `f` (6,).
 
     w is the rotation in v, and p, h are the momentum A v.

@@ -7,6 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.hulls.placed_ballasts import find_ballasts
 from buoyancy_mj.loads.loads import Loads
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.sea.water import Water
@@ -23,13 +24,14 @@ class Energy:
     """
 
     kinetic: float
-    """Kinetic energy of the bodies [J], with that of their added mass."""
+    """Kinetic energy of the bodies [J], with that of their added mass and of water in tanks."""
     potential: float
     """Potential energy of the bodies in gravity (and in springs) [J], zero at z = 0. A spring
-    between two vehicles counts with neither. What gravity compensation carries has none."""
+    between two vehicles counts with neither. What gravity compensation carries has none. The water
+    in tanks counts."""
     buoyancy: float
     """Energy [J] that lifted the displaced water from its centroid to the surface:
-    rho g V (elevation - z)."""
+    rho g V (elevation - z). A bladder counts as wholly wet."""
 
     @property
     def total(self) -> float:
@@ -51,6 +53,8 @@ class EnergyMeter:
         self._dofs = np.isin(model.dof_bodyid, vehicle.bodies)
         self._springs = _model_of_springs(model, vehicle)
         self._moments = np.zeros(model.nv)
+        placed = find_ballasts(model)
+        self._ballast = [one for one in placed if one.body in vehicle.bodies]
 
     def measure(self, data: mujoco.MjData, loads: Loads, water: Water) -> Energy:
         """The energy at the poses and velocities of data, as mj_forward left them.
@@ -68,7 +72,24 @@ class EnergyMeter:
         rows = self._vehicle.rows
         lifted = water.depth(loads.hull.centroid[rows], float(data.time))
         buoyancy = float(np.nansum(loads.hull.force[rows, 2] * lifted))
-        return Energy(kinetic, self._potential(data), buoyancy)
+        lowered, blown = self._measure_ballast(data, water)
+        return Energy(kinetic, self._potential(data) + lowered, buoyancy + blown)
+
+    def _measure_ballast(self, data: mujoco.MjData, water: Water) -> tuple[float, float]:
+        """Potential energy of the water in tanks [J], and that of what bladders displace."""
+        lowered = blown = 0.0
+        for one in self._ballast:
+            volume = float(np.clip(data.act[one.state], 0.0, one.capacity))
+            if not volume > 0.0:
+                continue
+            weight = water.density * self._vehicle.gravity * volume
+            turn = data.geom_xmat[one.geom].reshape(3, 3)
+            at = one.find_centroid(volume, turn, data.geom_xpos[one.geom])
+            if one.holds_water:
+                lowered += weight * float(at[2])
+            else:
+                blown += weight * float(water.depth(at, float(data.time)))
+        return lowered, blown
 
     def _potential(self, data: mujoco.MjData) -> float:
         """Potential energy of the vehicle in gravity and in its springs [J]."""

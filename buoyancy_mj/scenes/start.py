@@ -83,7 +83,9 @@ def settle_vehicle(
         if not np.isin(group, with_hulls).any():
             continue
         root = body_name(model, list_roots(model, group)[0])
-        vessel = build_vessel_from_hulls(model, hulls, scene.water, data.qpos, body=root)
+        vessel = build_vessel_from_hulls(
+            model, hulls, scene.water, data.qpos, body=root, ballast=data.act
+        )
         data.qpos[:] = find_equilibrium(vessel).qpos
 
 

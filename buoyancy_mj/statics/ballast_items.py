@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.statics.ballast_program import NEGLIGIBLE
 from buoyancy_mj.statics.ballast_sites import BallastSite
-from buoyancy_mj.statics.building import steiner
 from buoyancy_mj.statics.vessel import Vessel, VesselHull
+from buoyancy_mj.statics.weights import Weight, add_weights
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -73,33 +73,14 @@ def add_items(vessel: Vessel, items: Sequence[BallastItem]) -> Vessel:
     """A copy of a vessel with things added to it."""
     points = [item.position - vessel.centre_of_gravity for item in items]
     pairs = list(zip(items, points, strict=True))
+    shift, heavy = add_weights(
+        vessel, [Weight(item.mass, point, item.inertia * np.eye(3)) for item, point in pairs]
+    )
 
-    # how far the centre of gravity goes; what weighs nothing has none, and keeps that of its mass
-    added = sum(item.mass for item in items)
-    moment = sum((item.mass * point for item, point in pairs), np.zeros(3))
-    mass = vessel.mass + added
-    shift = moment / mass if mass else np.zeros(3)
-
-    # the centre of mass, and inertia about it
-    whole = vessel.whole_mass
-    centre = (whole * vessel.centre_of_mass + moment) / (whole + added)
-    inertia = vessel.inertia + whole * steiner(vessel.centre_of_mass - centre)
-    for item, point in pairs:
-        inertia = inertia + item.mass * steiner(point - centre) + item.inertia * np.eye(3)
-
-    # hulls and sites from the new centre of gravity, and the balls that displace
-    hulls = [dataclasses.replace(hull, position=hull.position - shift) for hull in vessel.hulls] + [
+    # the balls that displace
+    balls = [
         VesselHull(item.label, shapes.sphere(item.radius), point - shift, np.eye(3), 1.0)
         for item, point in pairs
         if item.displaces
     ]
-    return dataclasses.replace(
-        vessel,
-        mass=mass,
-        inertia=inertia,
-        centre_of_mass=centre - shift,
-        centre_of_gravity=vessel.centre_of_gravity + shift,
-        position=vessel.position + vessel.rotation @ shift,
-        hulls=tuple(hulls),
-        sites={name: point - shift for name, point in vessel.sites.items()},
-    )
+    return dataclasses.replace(heavy, hulls=(*heavy.hulls, *balls))

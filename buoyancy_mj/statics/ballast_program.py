@@ -79,14 +79,14 @@ def _set_up_equations(
     arms = np.array([pose.rotation @ site.point for site in sites]).reshape(-1, 3)
     net = np.array([1.0 - site.lift for site in sites])
     rows = np.vstack([net, net * arms[:, 0], net * arms[:, 1]])
-    targets = np.array([displacement - reserve - vessel.mass, *(displacement * pose.arm[:2])])
+    targets = np.array([displacement - reserve - vessel.mass, *(displacement * pose.lever[:2])])
     if bg is None:
         return _Equations(rows, targets)
 
     # the sum of m z, less that of the water displaced, is -bg times the mass
     return _Equations(
         rows=np.vstack([rows, net * arms[:, 2] + bg]),
-        targets=np.append(targets, displacement * pose.arm[2] - bg * vessel.mass),
+        targets=np.append(targets, displacement * pose.lever[2] - bg * vessel.mass),
     )
 
 

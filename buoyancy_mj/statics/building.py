@@ -2,7 +2,7 @@
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import mujoco
@@ -18,8 +18,10 @@ from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.hulls.tethers import describe_bond, find_tether, has_free_joint, list_roots
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.statics.filling import fill_vessel
 from buoyancy_mj.statics.joined_trees import find_open_bond, join_trees, locate_trees
 from buoyancy_mj.statics.vessel import Vessel, VesselHull
+from buoyancy_mj.statics.weights import steiner
 
 _NEGLIGIBLE = 1e-9
 """Part of the mass of a vessel, and of its size, below which a weight or its moment is rounding."""
@@ -34,6 +36,7 @@ def build_vessel(
     *,
     body: str | None = None,
     selection: Selection = Selection(),
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> Vessel:
     """Build a vessel of a model: what floats together, by its joints, welds and connects.
 
@@ -45,6 +48,8 @@ def build_vessel(
         body: name of a root body, where several float; the first that floats freely and has hulls
             if None. Of a vessel of several trees it may be the root of any.
         selection: which geoms displace water, and as what.
+        ballast: what tanks, compartments and bladders hold: volumes [m^3] by name, or the states of
+            actuators (na,), as `data.act`; None for empty.
 
     Raises:
         ModelError: coordinates are of the wrong size or not finite, no such body floats, the body
@@ -52,7 +57,8 @@ def build_vessel(
             no gravity or it is not along -z, or no geom displaces water.
         MeshError: a mesh bounds no volume.
     """
-    return build_vessel_from_hulls(model, find_hulls(model, selection), water, qpos, body=body)
+    hulls = find_hulls(model, selection)
+    return build_vessel_from_hulls(model, hulls, water, qpos, body=body, ballast=ballast)
 
 
 def build_vessel_from_hulls(
@@ -62,6 +68,7 @@ def build_vessel_from_hulls(
     qpos: ArrayLike | None = None,
     *,
     body: str | None = None,
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> Vessel:
     """Build a vessel of a model with hulls at hand; see `build_vessel`."""
     if not isinstance(water, Water | None):
@@ -113,7 +120,8 @@ def build_vessel_from_hulls(
             if model.site(i).name and model.site_bodyid[i] in bodies
         },
     )
-    return vessel if pose is None else _move_root(vessel, pose)
+    filled = fill_vessel(vessel, data, frame.origin, frame.root_from_world, ballast)
+    return filled if pose is None else _move_root(filled, pose)
 
 
 class _Frame(NamedTuple):
@@ -266,8 +274,3 @@ def _add_up_masses(
             "gravity; correct gravcomp of its bodies"
         )
     return _Masses(mass, 0.0, centre, centre.copy(), inertia)
-
-
-def steiner(arm: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Inertia per mass (3, 3) [m^2] of a point at `arm` (3,) [m] about the origin (Steiner)."""
-    return np.asarray(arm @ arm * np.eye(3) - np.outer(arm, arm), float)

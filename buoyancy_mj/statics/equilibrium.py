@@ -1,7 +1,7 @@
 """`equilibrium` and `equilibria`: where a vessel comes to rest, and whether it stays there."""
 
 import dataclasses
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import mujoco
 import numpy as np
@@ -74,6 +74,7 @@ def equilibrium(
     stable: bool = True,
     body: str | None = None,
     selection: Selection = Selection(),
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> Equilibrium:
     """Find the pose in which a vessel comes to rest, its joints held.
 
@@ -90,6 +91,8 @@ def equilibrium(
         body: name of the root body, where several float; the first that floats freely and has
             hulls if None.
         selection: which geoms displace water, and as what.
+        ballast: what tanks, compartments and bladders hold: volumes [m^3] by name, or the states of
+            actuators (na,), as `data.act`; None for empty.
 
     Raises:
         EquilibriumError: the vessel sinks, or there is no balance near the start.
@@ -99,7 +102,7 @@ def equilibrium(
     Example:
         `equilibrium(model, Water(density=1025.0)).hydrostatics.draft`
     """
-    vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel = build_vessel(model, water, start, body=body, selection=selection, ballast=ballast)
     vessel.check_free()
     return find_equilibrium(vessel, stable=stable)
 
@@ -111,6 +114,7 @@ def equilibria(
     *,
     body: str | None = None,
     selection: Selection = Selection(),
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> tuple[Equilibrium, ...]:
     """Find every pose in which a vessel stays at rest, its joints held; lowest energy first.
 
@@ -127,13 +131,15 @@ def equilibria(
         body: name of the root body, where several float; the first that floats freely and has
             hulls if None.
         selection: which geoms displace water, and as what.
+        ballast: what tanks, compartments and bladders hold: volumes [m^3] by name, or the states of
+            actuators (na,), as `data.act`; None for empty.
 
     Raises:
         EquilibriumError: the vessel sinks.
         ModelError: nothing is free to float; or see `statics.building.build_vessel`.
         MeshError: a mesh bounds no volume.
     """
-    vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel = build_vessel(model, water, start, body=body, selection=selection, ballast=ballast)
     vessel.check_free()
     return find_equilibria(vessel)
 
@@ -170,12 +176,9 @@ def move_to_rest(vessel: Vessel, rest: Equilibrium) -> Vessel:
     start = int(vessel.model.jnt_qposadr[vessel.model.body_jntadr[vessel.root]])
     rotation = np.empty(9)
     mujoco.mju_quat2Mat(rotation, rest.qpos[start + 3 : start + 7])
-    return dataclasses.replace(
-        vessel,
-        qpos=rest.qpos,
-        position=rest.hydrostatics.centre_of_gravity,
-        rotation=rotation.reshape(3, 3),
-    )
+    turn = rotation.reshape(3, 3)
+    position = rest.qpos[start : start + 3] + turn @ vessel.centre_of_gravity
+    return dataclasses.replace(vessel, qpos=rest.qpos, position=position, rotation=turn)
 
 
 def _describe(pose: FloatingPose, iterations: int, *, held: bool) -> Equilibrium:

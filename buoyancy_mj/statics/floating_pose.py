@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,6 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.kernels import clip
 from buoyancy_mj.kernels.waterplane import HIGHEST, INTEGRALS, LOWEST
 from buoyancy_mj.statics.vessel import Vessel
+
+if TYPE_CHECKING:
+    from buoyancy_mj.statics.tanks import FreeSurface
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -66,6 +70,29 @@ class FloatingPose:
             high=rows[:, HIGHEST].max(axis=0),
         )
 
+    @functools.cached_property
+    def surfaces(self) -> "tuple[FreeSurface, ...]":
+        """How the water in its tanks lies, of each."""
+        return tuple(tank.settle(self.rotation) for tank in self.vessel.tanks)
+
+    @functools.cached_property
+    def shift(self) -> NDArray[np.float64]:
+        """From `position` to where the weight acts (3,) [m], world axes: the tanks' water moves."""
+        vessel = self.vessel
+        pairs = zip(vessel.tanks, self.surfaces, strict=True)
+        moment = sum((tank.volume * surface.shift for tank, surface in pairs), np.zeros(3))
+        return moment * vessel.water.density / vessel.mass if vessel.tanks else np.zeros(3)
+
+    @property
+    def lever(self) -> NDArray[np.float64]:
+        """From where the weight acts to the centre of buoyancy (3,) [m], world axes."""
+        return self.arm - self.shift
+
+    @functools.cached_property
+    def free_surface(self) -> NDArray[np.float64]:
+        """Second moments of all free surfaces, each about its own centroid (2, 2) [m^4]."""
+        return sum((surface.moments for surface in self.surfaces), np.zeros((2, 2)))
+
     @property
     def draft(self) -> float:
         """Depth of the lowest point of the hulls [m]; negative above the water."""
@@ -81,16 +108,18 @@ class FloatingPose:
     def energy(self) -> float:
         """Potential energy of weight and buoyancy [J]; `force` is minus its slope."""
         height = self.position[2] - self.vessel.water.level
-        return float(self.vessel.weight * height - self.buoyancy * (height + self.arm[2]))
+        weight = self.vessel.weight * (height + self.shift[2])
+        return float(weight - self.buoyancy * (height + self.arm[2]))
 
     @property
     def force(self) -> NDArray[np.float64]:
         """Upward force [N] and torques about x and y [N m] (3,), which drive heave, roll and pitch.
 
-        Torques are about the centre of gravity, in the world's axes.
+        Torques are about `position`, in the world's axes.
         """
-        lift = self.buoyancy
-        return np.array([lift - self.vessel.weight, lift * self.arm[1], -lift * self.arm[0]])
+        lift, weight = self.buoyancy, self.vessel.weight
+        x, y, _ = lift * self.arm - weight * self.shift
+        return np.array([lift - weight, y, -x])
 
     @property
     def torque(self) -> NDArray[np.float64]:
@@ -104,12 +133,14 @@ class FloatingPose:
         It is minus the derivative of `force`. With u the motion of the body, the derivative of an
         integral of f over the wet volume is that of grad f . u, less f u_z over the waterplane
         (Reynolds' transport theorem); f = 1, y, x give the matrix of Newman, Marine Hydrodynamics
-        (1977), sec. 6.16, with moments about the centre of gravity.
+        (1977), sec. 6.16, with moments about `position`. The water in tanks counts likewise with
+        the opposite sign, and the volume of each stays.
         """
         area = self.waterplane.area
         x, y = self.waterplane.first_moments
-        (xx, xy), (_, yy) = self.waterplane.second_moments
-        lever = self.volume * self.arm[2]
+        (xx, xy), (_, yy) = self.waterplane.second_moments - self.free_surface
+        held = self.vessel.mass / self.vessel.water.density
+        lever = self.volume * self.arm[2] - held * self.shift[2]
         return self.vessel.specific_weight * np.array(
             [[area, y, -x], [y, yy + lever, -xy], [-x, -xy, xx + lever]]
         )

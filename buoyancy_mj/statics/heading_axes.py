@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.statics.building import steiner
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
+from buoyancy_mj.statics.weights import steiner
 
 HEAVE_ROLL_PITCH = slice(2, 5)
 """Motions that still water restores, of surge, sway, heave, roll, pitch, yaw."""
@@ -51,6 +51,7 @@ def compute_stiffness(pose: FloatingPose, axes: NDArray[np.float64]) -> NDArray[
     turn[1:, 1:] = axes[:2, :2]
     matrix[HEAVE_ROLL_PITCH, HEAVE_ROLL_PITCH] = turn @ pose.stiffness @ turn.T
 
-    # the moments of buoyancy turn with the heading
-    matrix[_ROLL_PITCH, _YAW] = -pose.buoyancy * (axes[:2, :2] @ pose.arm[:2])
+    # the moments of buoyancy and of water in tanks turn with the heading
+    x, y = pose.torque
+    matrix[_ROLL_PITCH, _YAW] = axes[:2, :2] @ [y, -x]
     return matrix

@@ -90,7 +90,7 @@ class Heeling:
 
     def measure_arm(self, pose: FloatingPose) -> float:
         """Righting arm [m] of a pose."""
-        return -float(self._world_from_axes[:2, 1] @ pose.arm[:2])
+        return -float(self._world_from_axes[:2, 1] @ pose.lever[:2])
 
     def measure_trim(self, pose: FloatingPose) -> float:
         """Trim [rad] of a pose, bow down, from that of the upright vessel."""

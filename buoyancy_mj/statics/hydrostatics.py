@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from collections.abc import Mapping
 
 import mujoco
 import numpy as np
@@ -49,7 +50,8 @@ class Hydrostatics:
     volume: float
     """Volume of water that the vessel displaces [m^3]."""
     centre_of_gravity: NDArray[np.float64]
-    """Centre of gravity G (3,) [m], world frame: the point through which the weight acts."""
+    """Centre of gravity G (3,) [m], world frame: the point through which the weight acts, with the
+    water in tanks where it lies in the pose."""
     centre_of_buoyancy: NDArray[np.float64]
     """Centre of buoyancy B (3,) [m], world frame; NaN when dry."""
     wetted_area: float
@@ -62,6 +64,9 @@ class Hydrostatics:
     """Second moments x x, x y; x y, y y of the waterplane about its centroid (2, 2) [m^4].
 
     x points along the heading, y to port."""
+    free_surface: NDArray[np.float64]
+    """Second moments of the surfaces of water in tanks, each about its own centroid (2, 2) [m^4],
+    along the axes of `waterplane_moments`: they take rho i / displacement off GM."""
     keel: float
     """Height of the lowest point of the hulls [m], world frame."""
     waterline_length: float
@@ -132,19 +137,20 @@ class Hydrostatics:
     @property
     def GMt(self) -> float:  # noqa: N802
         """Transverse metacentric height [m]: positive rights the vessel in roll."""
-        return self.BG + self.BMt
+        return self.BG + self.BMt - self._divide_by_volume(self.free_surface[1, 1])
 
     @property
     def GMl(self) -> float:  # noqa: N802
         """Longitudinal metacentric height [m]: positive rights the vessel in pitch."""
-        return self.BG + self.BMl
+        return self.BG + self.BMl - self._divide_by_volume(self.free_surface[0, 0])
 
     @property
     def GM(self) -> float:  # noqa: N802
         """Least metacentric height [m], over all axes to heel about."""
         if not self.volume > 0.0:
             return math.nan
-        return self.BG + float(np.linalg.eigvalsh(self.waterplane_moments)[0]) / self.volume
+        moments = self.waterplane_moments - self.free_surface
+        return self.BG + float(np.linalg.eigvalsh(moments)[0]) / self.volume
 
     def natural_periods(self, added_mass: ArrayLike | None = None) -> NDArray[np.float64]:
         """Compute the undamped periods of heave, roll and pitch, each by itself (3,) [s].
@@ -206,6 +212,7 @@ def hydrostatics(
     *,
     body: str | None = None,
     selection: Selection = Selection(),
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> Hydrostatics:
     """Compute the hydrostatics of a vessel at `qpos`: floating, submerged or in the air.
 
@@ -217,6 +224,8 @@ def hydrostatics(
         body: name of the root body, where several float; the first that floats freely and has
             hulls if None.
         selection: which geoms displace water, and as what.
+        ballast: what tanks, compartments and bladders hold: volumes [m^3] by name, or the states of
+            actuators (na,), as `data.act`; None for empty.
 
     Raises:
         ModelError: see `statics.building.build_vessel`.
@@ -225,7 +234,7 @@ def hydrostatics(
     Example:
         `hydrostatics(model, qpos=[0, 0, -0.2, 1, 0, 0, 0]).GMt`
     """
-    vessel = build_vessel(model, water, qpos, body=body, selection=selection)
+    vessel = build_vessel(model, water, qpos, body=body, selection=selection, ballast=ballast)
     return compute_hydrostatics(pose_vessel(vessel, vessel.position, vessel.rotation))
 
 
@@ -256,12 +265,13 @@ def compute_hydrostatics(pose: FloatingPose) -> Hydrostatics:
         carried_mass=vessel.carried_mass,
         whole_volume=vessel.volume,
         volume=pose.volume,
-        centre_of_gravity=pose.position.copy(),
+        centre_of_gravity=pose.position + pose.shift,
         centre_of_buoyancy=pose.position + (pose.arm if pose.volume > 0.0 else math.nan),
         wetted_area=pose.wetted_area,
         waterplane_area=area,
         centre_of_flotation=flotation,
         waterplane_moments=moments,
+        free_surface=axes[:2, :2] @ pose.free_surface @ axes[:2, :2].T,
         keel=float(pose.position[2] + low),
         waterline_length=length,
         waterline_beam=beam,

@@ -3,7 +3,7 @@
 import dataclasses
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import mujoco
@@ -89,6 +89,7 @@ def righting_arm(
     points: Sequence[str] | str = POINTS,
     body: str | None = None,
     selection: Selection = Selection(),
+    ballast: Mapping[str, float] | ArrayLike | None = None,
 ) -> RightingArm:
     """Compute the GZ curve of a vessel at the draft that carries its weight, its joints held.
 
@@ -110,6 +111,8 @@ def righting_arm(
         body: name of the root body, where several float; the first that floats freely and has
             hulls if None.
         selection: which geoms displace water, and as what.
+        ballast: what tanks, compartments and bladders hold: volumes [m^3] by name, or the states of
+            actuators (na,), as `data.act`; None for empty.
 
     Raises:
         EquilibriumError: the vessel sinks, weighs nothing, or does not balance at all.
@@ -133,7 +136,7 @@ def righting_arm(
         points = [points]
     if not isinstance(points, Sequence) or not all(isinstance(glob, str) for glob in points):
         raise ModelError(f"points is {describe(points)}; it must be globs of sites, as ['deck*']")
-    vessel = build_vessel(model, water, start, body=body, selection=selection)
+    vessel = build_vessel(model, water, start, body=body, selection=selection, ballast=ballast)
     vessel.check_free()
     return compute_righting_arm(vessel, heels, axis=axis, trim_free=trim == "free", points=points)
 

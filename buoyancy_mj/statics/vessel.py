@@ -4,6 +4,7 @@ import dataclasses
 import fnmatch
 import functools
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
@@ -18,6 +19,9 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.joined_trees import JoinedTree
 from buoyancy_mj.submersion.exact import PackedHulls
 from buoyancy_mj.submersion.hull_set import HullSet
+
+if TYPE_CHECKING:
+    from buoyancy_mj.statics.tanks import VesselTank
 
 PLAUSIBLE = 1e-4, 1e4
 """Least and greatest plausible mass of displaced water over mass, fully submerged.
@@ -96,6 +100,9 @@ class Vessel:
     """The hulls (h)."""
     sites: dict[str, NDArray[np.float64]]
     """Positions of its named sites in the vessel's axes, each (3,) [m]."""
+    tanks: "tuple[VesselTank, ...]" = ()
+    """Its tanks and compartments with a free surface. The centre of gravity counts their water
+    where it lies while the vessel is upright."""
 
     @property
     def name(self) -> str:

@@ -23,6 +23,7 @@ COLOURS: Mapping[str, Colour] = {
     "foil": (150, 210, 70),
     "added_mass": (170, 120, 230),
     "slamming": (250, 245, 150),
+    "ballast": (200, 150, 90),
 }
 """Colours of forces, in plots and as arrows."""
 NEUTRAL: Colour = (225, 225, 225)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from numba import int64, njit, void
 
-from buoyancy_mj.kernels import clip, passes
+from buoyancy_mj.kernels import clip, delivery
 from buoyancy_mj.kernels.entries.tables import WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
 from buoyancy_mj.kernels.multibody import Engine, downward_gravity
@@ -52,7 +52,7 @@ def make_entry(load: Callable[..., None]) -> Callable[..., None]:
 
 
 def augment(model: int64, data: int64, record: int64, water: int64) -> int64:
-    """Add the added mass to the engine's mass matrix; returns what `passes.augment` does."""
+    """Add the added mass to the engine's mass matrix; returns what `delivery.augment` does."""
     table = view(water, WaterTable)
     engine = view_engine(model, data, table.offsets, Engine)
-    return passes.augment(table.loads, engine, view(record, Record))
+    return delivery.augment(table.loads, engine, view(record, Record))

@@ -7,7 +7,7 @@ import math
 
 from numba import int64, njit, void
 
-from buoyancy_mj.kernels import passes
+from buoyancy_mj.kernels import delivery, passes
 from buoyancy_mj.kernels.entries.pointers import call, exchange, set_word, word
 from buoyancy_mj.kernels.entries.tables import Lease, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
@@ -37,13 +37,13 @@ def _evaluate(model, data, water, place, record):
     passes.end(engine, results)
 
     # to the forces, and to the mass matrix
-    passes.deliver(loads, engine, results)
-    done = passes.UNCHANGED
+    delivery.deliver(loads, engine, results)
+    done = delivery.UNCHANGED
     if links.augment != 0:
         done = call(links.augment, (model, data, record, water))
-    if done != passes.UNCHANGED:
+    if done != delivery.UNCHANGED:
         call(links.factor, (model, data))
-    if done == passes.AUGMENT_DUAL:
+    if done == delivery.AUGMENT_DUAL:
         call(links.project, (model, data))
     results.ids[MODEL], results.ids[DATA] = model, data
     return 0

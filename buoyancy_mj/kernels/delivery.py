@@ -1,0 +1,57 @@
+"""What a pass of the water does to the engine: its forces, and its mass matrix."""
+
+import numpy as np
+from numba import njit
+
+from buoyancy_mj.kernels import ballast, inertia, wrenches
+from buoyancy_mj.kernels.multibody import PGS
+from buoyancy_mj.kernels.passes import AUGMENTED
+
+UNCHANGED, AUGMENT, AUGMENT_DUAL = range(3)
+"""What `augment` did to the mass matrix: nothing; added mass, so that it must be factored anew; the
+same for a solver of the dual problem, whose constraints must be projected anew too."""
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def deliver(loads, engine, record):
+    """Add the sum of all loads to the engine's forces."""
+    wrenches.project(record.total, loads.bodies, engine.bodies, engine.joints, engine.qfrc_passive)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def augment(loads, engine, record):
+    """Add added mass and the water in tanks to the engine's mass matrix, once in each pass.
+
+    Returns:
+        `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
+    """
+    mass = engine.mass_matrix.M
+    if _is_augmented(mass, record):
+        return UNCHANGED
+    record.ids[AUGMENTED] = 0
+    wet = inertia.add_inertia(
+        loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
+    )
+    filled = ballast.add_inertia(
+        loads.ballast,
+        engine.commands.act,
+        loads.sea.density,
+        engine.bodies,
+        engine.joints,
+        engine.mass_matrix,
+    )
+    if not (wet or filled):
+        return UNCHANGED
+    record.ids[AUGMENTED] = 1
+    record.inertia[:] = mass
+    dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
+    return AUGMENT_DUAL if dual else AUGMENT
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _is_augmented(mass, record):
+    """Whether the mass matrix holds the added mass already.
+
+    The engine may go over a pass again without computing its mass matrix anew.
+    """
+    return record.ids[AUGMENTED] != 0 and np.array_equal(mass, record.inertia)
