@@ -198,6 +198,18 @@ def test_the_arrows_of_thrusters_are_what_the_engine_pushes_with(recorded):
     assert np.abs(total).max() > 1.0
 
 
+def test_a_reference_site_gives_the_axes_of_a_thruster_and_a_torque_alone_no_arrow():
+    text = VEHICLE.replace('name="port" site="port"', 'name="port" site="port" refsite="anchor"')
+    text = text.replace('name="anchor"', 'name="anchor" euler="30 40 50"')
+    model, data = make(text.replace('gear="0 0 2 0 0 0"', 'gear="0 0 0 0 0 2"'))
+    data.ctrl[:] = 3.0, -2.0
+    mujoco.mj_forward(model, data)
+    forces = ThrusterDrawing(find_run(model, data), 1.0).find_forces(data)
+    assert forces.shape == (1, 3)
+    assert forces[0] == pytest.approx(data.qfrc_actuator[:3], abs=1e-12)
+    assert np.linalg.norm(forces[0]) == pytest.approx(3.0)
+
+
 def test_the_arrows_of_contacts_are_what_holds_the_stone(recorded):
     model, data, *_ = recorded
     again = mujoco.MjData(model)

@@ -19,6 +19,9 @@ from buoyancy_mj.files import GrowingFile, replace_file
 ENDS = (".csv", ".parquet")
 """Ends of names that say what kind of table a file is."""
 
+BLOCK = 1 << 25
+"""Bytes of CSV that become one group of rows in parquet."""
+
 
 class Column(NamedTuple):
     """A column of numbers."""
@@ -145,6 +148,7 @@ class SeriesFile:
             with (
                 arrow_csv.open_csv(
                     self._file.partial,
+                    read_options=arrow_csv.ReadOptions(block_size=BLOCK),
                     parse_options=arrow_csv.ParseOptions(newlines_in_values=True),
                     convert_options=arrow_csv.ConvertOptions(
                         column_types=dict.fromkeys(headers, pa.float64()), null_values=[]
