@@ -32,8 +32,10 @@ def add_sensor(spec: mujoco.MjSpec, site: str, sensor: SiteSensor, name: str | N
         ModelError: there is no such site, the name is taken, or a value is of the wrong kind.
 
     Example:
-        >>> add_sensor(spec, "keel", Dvl(noise=0.005, rate=8.0))
-        >>> model = spec.compile()
+        >>> site = spec.worldbody.add_site(name="pole", pos=[0.0, 2.0, -0.5])
+        >>> gauge = add_sensor(spec, "pole", Pressure(noise=20.0, rate=8.0))
+        >>> spec.compile().sensor("pressure").dim
+        array([1], dtype=int32)
     """
     if not isinstance(spec, mujoco.MjSpec):
         raise ModelError(
