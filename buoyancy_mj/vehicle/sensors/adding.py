@@ -32,15 +32,17 @@ def add_sensor(spec: mujoco.MjSpec, site: str, sensor: SiteSensor, name: str | N
         ModelError: there is no such site, the name is taken, or a value is of the wrong kind.
 
     Example:
-        >>> add_sensor(spec, "keel", Dvl(noise=0.005, rate=8.0))
-        >>> model = spec.compile()
+        >>> site = spec.worldbody.add_site(name="pole", pos=[0.0, 2.0, -0.5])
+        >>> gauge = add_sensor(spec, "pole", Pressure(noise=20.0, rate=8.0))
+        >>> spec.compile().sensor("pressure").dim
+        array([1], dtype=int32)
     """
     if not isinstance(spec, mujoco.MjSpec):
         raise ModelError(
             f"spec is {describe(spec)}; it must be an MjSpec, as "
             "mujoco.MjSpec.from_file('my_auv.xml') gives it"
         )
-    if not isinstance(sensor, SiteSensor) or not hasattr(sensor, "PLUGIN"):
+    if not isinstance(sensor, SiteSensor) or not hasattr(sensor, "KIND"):
         kinds = ", ".join(sorted(cls.__name__ for cls in _list_kinds(SiteSensor)))
         raise ModelError(f"sensor is {describe(sensor)}; it must be one of {kinds}")
     sites = [each.name for each in spec.sites if each.name]
@@ -48,7 +50,7 @@ def add_sensor(spec: mujoco.MjSpec, site: str, sensor: SiteSensor, name: str | N
         raise ModelError(
             f"the model has no site {describe(site)} for a sensor; {choices(site, sites)}"
         )
-    chosen = sensor.PLUGIN.rpartition(".")[2] if name is None else name
+    chosen = sensor.KIND.plugin.rpartition(".")[2] if name is None else name
     if any(other.name == chosen for other in spec.sensors):
         raise ModelError(
             f"the model already has a sensor '{chosen}'; give this one another name (name=)"
@@ -60,7 +62,7 @@ def add_sensor(spec: mujoco.MjSpec, site: str, sensor: SiteSensor, name: str | N
         objtype=mujoco.mjtObj.mjOBJ_SITE,
         objname=site,
     )
-    add_instance(spec, element, sensor.PLUGIN, format_sensor(sensor))
+    add_instance(spec, element, sensor.KIND.plugin, format_sensor(sensor))
     return element
 
 
@@ -89,4 +91,4 @@ def find_streams(model: mujoco.MjModel) -> NDArray[np.int64]:
 def _list_kinds(cls: type[SiteSensor]) -> list[type[SiteSensor]]:
     """All kinds of sensors."""
     below = [kind for sub in cls.__subclasses__() for kind in _list_kinds(sub)]
-    return ([cls] if hasattr(cls, "PLUGIN") else []) + below
+    return ([cls] if hasattr(cls, "KIND") else []) + below

@@ -12,7 +12,7 @@ from buoyancy_mj.values import read_truth
 from buoyancy_mj.vehicle.sensors.beams import make_echoes
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
 from buoyancy_mj.vehicle.sensors.ranging import check_ranges
-from buoyancy_mj.vehicle.sensors.sampling import NoisySensor
+from buoyancy_mj.vehicle.sensors.sampling import Kind, NoisySensor
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -26,9 +26,8 @@ class Altimeter(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.altimeter"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("", "m"),)
-    LOST: ClassVar[tuple[float, ...]] = (-1.0,)
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.altimeter", (("", "m"),), lost=(-1.0,))
+    """What all of its kind have."""
 
     min_range: float = 0.05
     """Least range that is read [m]."""

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 import mujoco
@@ -15,7 +14,7 @@ from buoyancy_mj.kernels.vehicle.sensors.dvl import FEWEST, DvlSensor, measure_d
 from buoyancy_mj.vehicle.sensors.beams import make_echoes
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
 from buoyancy_mj.vehicle.sensors.ranging import check_ranges
-from buoyancy_mj.vehicle.sensors.sampling import NoisySensor
+from buoyancy_mj.vehicle.sensors.sampling import VELOCITY, Kind, NoisySensor
 
 AZIMUTHS = np.radians([45.0, 135.0, -135.0, -45.0])
 """Of the four beams, from x of the site towards y: ahead to port, astern to port, astern to
@@ -36,18 +35,18 @@ class Dvl(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.dvl"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("x", "m/s"), ("y", "m/s"), ("z", "m/s"), ("lock", ""),
-        ("range_1", "m"), ("range_2", "m"), ("range_3", "m"), ("range_4", "m"),
-    )  # fmt: skip
-    LOST: ClassVar[tuple[float, ...]] = (*[math.nan] * 3, 0.0, *[-1.0] * 4)
-    NOISY: ClassVar[int] = 3
-    BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = {
-        "angle": (1.0, 80.0),
-        "range_noise": (0.0, math.inf),
-        "water_lock": (0.0, math.inf),
-    }
+    KIND: ClassVar[Kind] = Kind(
+        "buoyancy_mj.dvl",
+        channels=(*VELOCITY, ("lock", ""), *((f"range_{n}", "m") for n in (1, 2, 3, 4))),
+        lost=(*[math.nan] * 3, 0.0, *[-1.0] * 4),
+        noisy=3,
+        bounds=(
+            ("angle", 1.0, 80.0),
+            ("range_noise", 0.0, math.inf),
+            ("water_lock", 0.0, math.inf),
+        ),
+    )
+    """What all of its kind have."""
 
     angle: float = 30.0
     """Between each beam and -z of the site [degrees]; 30 and 22.5 are common."""

@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 import mujoco
@@ -13,7 +12,7 @@ from buoyancy_mj.kernels.vehicle.sensors.hydrophone import HydrophoneSensor
 from buoyancy_mj.values import read_text
 from buoyancy_mj.vehicle.references import find_by_last_word, find_named
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
-from buoyancy_mj.vehicle.sensors.sampling import NoisySensor
+from buoyancy_mj.vehicle.sensors.sampling import Kind, NoisySensor
 
 PINGER = "pinger"
 """Name of the site that is heard where none is stated."""
@@ -33,17 +32,23 @@ class Hydrophone(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.hydrophone"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (
-        ("range", "m"), ("bearing", "rad"), ("elevation", "rad"), ("travel_time", "s"),
-    )  # fmt: skip
-    LOST: ClassVar[tuple[float, ...]] = (-1.0, math.nan, math.nan, -1.0)
-    NOISY: ClassVar[int] = 1
-    BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = {
-        "sound_speed": (100.0, math.inf),
-        "period": (0.0, math.inf),
-        "angle_noise": (0.0, math.inf),
-    }
+    KIND: ClassVar[Kind] = Kind(
+        "buoyancy_mj.hydrophone",
+        channels=(
+            ("range", "m"),
+            ("bearing", "rad"),
+            ("elevation", "rad"),
+            ("travel_time", "s"),
+        ),
+        lost=(-1.0, math.nan, math.nan, -1.0),
+        noisy=1,
+        bounds=(
+            ("sound_speed", 100.0, math.inf),
+            ("period", 0.0, math.inf),
+            ("angle_noise", 0.0, math.inf),
+        ),
+    )
+    """What all of its kind have."""
 
     pinger: str = ""
     """Name of the site of the pinger; of several files the one in the sensor's own comes first.

@@ -1,5 +1,6 @@
 """`register_sensor`: a class of sensors becomes a plugin of the engine."""
 
+import contextlib
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple, TypeVar
 
@@ -8,7 +9,7 @@ import numpy as np
 
 from buoyancy_mj.engine.device_kinds import DeviceKind, Plan
 from buoyancy_mj.engine.device_registration import register_kind
-from buoyancy_mj.errors import ModelError
+from buoyancy_mj.errors import EngineError, ModelError
 from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.sensors.sampling import HELD, Mount
 from buoyancy_mj.vehicle.sensors.sampling import NoisySensor, SiteSensor
@@ -52,7 +53,7 @@ def register_sensor(
     """
 
     def plan(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]) -> Plan:
-        place = _find_place(model, instance, cls.PLUGIN)
+        place = _find_place(model, instance, cls.KIND.plugin)
         settings = parse_sensor(cls, texts, place.where)
         bind = make(settings, place)
         state = int(model.plugin_stateadr[instance])
@@ -62,18 +63,19 @@ def register_sensor(
             compute=compute,
         )
 
-    numbers = len(cls.CHANNELS)
-    register_kind(
-        DeviceKind(
-            plugin=cls.PLUGIN,
-            keys=list_keys(cls),
-            plan=plan,
-            capability=mujoco.mjtPluginCapabilityBit.mjPLUGIN_SENSOR,
-            stage=stage,
-            numbers=numbers,
-            states=HELD + numbers,
-        )
+    numbers = len(cls.KIND.channels)
+    kind = DeviceKind(
+        plugin=cls.KIND.plugin,
+        keys=list_keys(cls),
+        plan=plan,
+        capability=mujoco.mjtPluginCapabilityBit.mjPLUGIN_SENSOR,
+        stage=stage,
+        numbers=numbers,
+        states=HELD + numbers,
     )
+    # where plugins cannot be, the water's warning on import has said so
+    with contextlib.suppress(EngineError):
+        register_kind(kind)
 
 
 def _find_place(model: mujoco.MjModel, instance: int, plugin: str) -> Place:
@@ -105,7 +107,7 @@ def _find_place(model: mujoco.MjModel, instance: int, plugin: str) -> Place:
 
 def _mount(settings: SiteSensor, place: Place, state: int) -> Mount:
     """What compiled code knows of where a sensor is, and how it samples."""
-    count = len(settings.CHANNELS)
+    count = len(settings.KIND.channels)
     return Mount(
         site=place.site,
         body=place.body,
@@ -116,6 +118,6 @@ def _mount(settings: SiteSensor, place: Place, state: int) -> Mount:
         rate=settings.rate,
         noise=np.array(settings.deviations),
         bias=np.array(settings.biases),
-        lost=np.array(settings.LOST or (0.0,) * count),
+        lost=np.array(settings.KIND.lost or (0.0,) * count),
         truth=np.zeros(count),
     )

@@ -8,7 +8,7 @@ from buoyancy_mj.kernels.entries.sensors import make_entry
 from buoyancy_mj.kernels.vehicle.sensors import water
 from buoyancy_mj.values import read_truth
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
-from buoyancy_mj.vehicle.sensors.sampling import NoisySensor
+from buoyancy_mj.vehicle.sensors.sampling import Kind, NoisySensor
 
 ATMOSPHERE = 101_325.0
 """Pressure of the air [Pa], the standard atmosphere."""
@@ -25,8 +25,8 @@ class Pressure(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.pressure"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("", "Pa"),)
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.pressure", (("", "Pa"),))
+    """What all of its kind have."""
 
     absolute: bool = False
     """Whether the standard atmosphere, 101,325 Pa, is added."""

@@ -2,8 +2,7 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 from buoyancy_mj.errors import ModelError, describe
 from buoyancy_mj.values import (
@@ -18,6 +17,25 @@ from buoyancy_mj.values import (
 LARGEST_SEED = 2**31 - 1
 
 
+class Kind(NamedTuple):
+    """What all sensors of a kind have."""
+
+    plugin: str
+    """Name of its plugin, 'buoyancy_mj.depth'."""
+    channels: tuple[tuple[str, str], ...]
+    """Name and unit of each of its numbers; the name is '' for the only one."""
+    lost: tuple[float, ...] = ()
+    """What each reads where there is nothing to read; () for none that can be lost."""
+    noisy: int = 0
+    """How many of its numbers `noise` and `bias` are for, from the first on; 0 for all."""
+    bounds: tuple[tuple[str, float, float], ...] = ()
+    """Fields that are numbers, with the least and the greatest value of each."""
+
+
+VELOCITY = (("x", "m/s"), ("y", "m/s"), ("z", "m/s"))
+"""Channels of a velocity."""
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class SiteSensor:
     """A sensor at a site.
@@ -26,32 +44,26 @@ class SiteSensor:
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str]
-    """Name of its plugin, 'buoyancy_mj.KIND'."""
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]]
-    """Name and unit of each of its numbers; the name is '' for the only one."""
-    LOST: ClassVar[tuple[float, ...]] = ()
-    """What each reads where there is nothing to read; () for none that can be lost."""
-    BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """Least and greatest value of other fields that are numbers."""
+    KIND: ClassVar[Kind]
+    """What all of its kind have."""
 
     rate: float = 0.0
     """Samples per second [Hz], each held until the next; 0 reads in each step."""
 
     def __post_init__(self) -> None:
         set_number(self, ModelError, "rate", least=0.0)
-        for field, (least, most) in self.BOUNDS.items():
+        for field, least, most in self.KIND.bounds:
             set_number(self, ModelError, field, least=least, most=most)
 
     @property
     def deviations(self) -> tuple[float, ...]:
         """Standard deviation of the noise of each of its numbers."""
-        return (0.0,) * len(self.CHANNELS)
+        return (0.0,) * len(self.KIND.channels)
 
     @property
     def biases(self) -> tuple[float, ...]:
         """What is added to each of its numbers."""
-        return (0.0,) * len(self.CHANNELS)
+        return (0.0,) * len(self.KIND.channels)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -69,9 +81,6 @@ class NoisySensor(SiteSensor):
     """What is added to the reading: one number for all, or one for each."""
     seed: int = 0
     """Whole number that the noise depends on; noise of the same seed repeats."""
-
-    NOISY: ClassVar[int] = 0
-    """How many of its numbers `noise` and `bias` are for, from the first on; 0 for all."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -93,7 +102,7 @@ class NoisySensor(SiteSensor):
     @property
     def _count(self) -> int:
         """How many numbers have noise and bias."""
-        return self.NOISY or len(self.CHANNELS)
+        return self.KIND.noisy or len(self.KIND.channels)
 
     def _set_numbers(self, field: str, least: float) -> None:
         """Keep a field as a number, or as a tuple of as many as there are."""
@@ -110,4 +119,4 @@ class NoisySensor(SiteSensor):
     def _spread(self, value: tuple[float, ...] | float) -> tuple[float, ...]:
         """A number of each of the numbers; 0 for those without noise."""
         numbers = value if isinstance(value, tuple) else (value,) * self._count
-        return (*numbers, *[0.0] * (len(self.CHANNELS) - self._count))
+        return (*numbers, *[0.0] * (len(self.KIND.channels) - self._count))

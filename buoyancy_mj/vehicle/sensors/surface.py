@@ -2,7 +2,6 @@
 
 import dataclasses
 import math
-from collections.abc import Mapping
 from typing import ClassVar
 
 from buoyancy_mj.errors import ModelError
@@ -10,7 +9,7 @@ from buoyancy_mj.kernels.entries.sensors import make_entry
 from buoyancy_mj.kernels.vehicle.sensors import water
 from buoyancy_mj.values import read_truth
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
-from buoyancy_mj.vehicle.sensors.sampling import NoisySensor, SiteSensor
+from buoyancy_mj.vehicle.sensors.sampling import Kind, NoisySensor, SiteSensor
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -21,8 +20,8 @@ class Depth(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.depth"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("", "m"),)
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.depth", (("", "m"),))
+    """What all of its kind have."""
 
     still: bool = False
     """Whether it is the depth under the still level instead, without the waves."""
@@ -40,8 +39,8 @@ class Elevation(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.elevation"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("", "m"),)
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.elevation", (("", "m"),))
+    """What all of its kind have."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -52,9 +51,8 @@ class Wet(SiteSensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.wet"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("", ""),)
-    BOUNDS: ClassVar[Mapping[str, tuple[float, float]]] = {"radius": (0.0, math.inf)}
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.wet", (("", ""),), bounds=(("radius", 0.0, math.inf),))
+    """What all of its kind have."""
 
     radius: float = 0.0
     """Of the ball [m], whose wet share of volume is read; 0 for a point."""

@@ -9,7 +9,7 @@ from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.kernels.entries.sensors import make_entry
 from buoyancy_mj.kernels.vehicle.sensors import water
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
-from buoyancy_mj.vehicle.sensors.sampling import NoisySensor
+from buoyancy_mj.vehicle.sensors.sampling import VELOCITY, Kind, NoisySensor
 
 FRAMES = ("world", "site")
 """Axes that a velocity may be read in."""
@@ -23,8 +23,8 @@ class WaterVelocity(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.water_velocity"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("x", "m/s"), ("y", "m/s"), ("z", "m/s"))
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.water_velocity", VELOCITY)
+    """What all of its kind have."""
 
     frame: str = "world"
     """Whose axes it is along: 'world' or 'site'."""
@@ -43,8 +43,8 @@ class SpeedThroughWater(NoisySensor):
         ModelError: a value out of its range.
     """
 
-    PLUGIN: ClassVar[str] = "buoyancy_mj.speed_through_water"
-    CHANNELS: ClassVar[tuple[tuple[str, str], ...]] = (("x", "m/s"), ("y", "m/s"), ("z", "m/s"))
+    KIND: ClassVar[Kind] = Kind("buoyancy_mj.speed_through_water", VELOCITY)
+    """What all of its kind have."""
 
 
 def _make_water_velocity(settings: WaterVelocity, _: Place) -> Bind:

@@ -1,0 +1,90 @@
+"""What sensors add to a step."""
+
+import time
+from collections.abc import Iterator
+
+import mujoco
+import numpy as np
+
+from buoyancy_mj import (
+    Altimeter,
+    Depth,
+    Dvl,
+    Elevation,
+    Hydrophone,
+    Pressure,
+    SpeedThroughWater,
+    WaterVelocity,
+    Wet,
+    add_sensor,
+    add_water,
+    read_scene,
+)
+from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.assembly import INTEGRATORS
+from buoyancy_mj.scenes.vehicles import read_vehicle
+
+TEN = {
+    "pressure": Pressure(noise=50.0),
+    "depth": Depth(noise=0.01),
+    "still depth": Depth(still=True),
+    "elevation": Elevation(noise=0.01),
+    "water velocity": WaterVelocity(noise=0.01),
+    "speed through water": SpeedThroughWater(noise=0.01),
+    "wet": Wet(radius=0.05),
+    "dvl": Dvl(noise=0.005, water_lock=2.0),
+    "altimeter": Altimeter(surface=True),
+    "hydrophone": Hydrophone(noise=0.1),
+}
+"""One of each kind, and depth twice; each reads in each step."""
+STEPS, STRETCHES = 20, 50
+"""Steps of a stretch that is timed, and how many of them make the ten seconds of the scene."""
+
+
+def measure(quick: bool) -> dict[str, float]:
+    """Measure a mean step of `auv_waves` [s]: without sensors, with each of the ten, with all."""
+    choices = {"none": [], **{name: [name] for name in TEN}, "all": list(TEN)}
+    if quick:
+        choices = {"none": [], "all": list(TEN)}
+    models = {label: build(names) for label, names in choices.items()}
+    times = {label: np.full(STRETCHES, np.inf) for label in models}
+    # time of the thread, in turns and in short stretches, the best of each: others may be at work
+    for _ in range(3 if quick else 10):
+        for label, model in models.items():
+            data = mujoco.MjData(model)
+            for stretch in range(STRETCHES):
+                started = time.thread_time()
+                mujoco.mj_step(model, data, STEPS)
+                spent = (time.thread_time() - started) / STEPS
+                times[label][stretch] = min(times[label][stretch], spent)
+    return {label: float(best.mean()) for label, best in times.items()}
+
+
+def build(names: list[str]) -> mujoco.MjModel:
+    """The vehicle of the scene in its waves over a floor, with some of the ten sensors alone."""
+    scene = read_scene(catalog.scenes()["auv_waves"])
+    spec = read_vehicle(catalog.model_path(scene.entries[0].model, scene.folder))
+    spec.option.timestep = scene.timestep
+    spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
+    spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=[0, 0, -8])
+    spec.worldbody.add_site(name="pinger", pos=[8, 3, -2])
+    for sensor in [each for each in spec.sensors if each.plugin.active]:
+        spec.delete(sensor)
+    add_water(spec, scene)
+    for name in names:
+        add_sensor(spec, "imu", TEN[name], name=name)
+    model = spec.compile()
+    model.qpos0[:3] = scene.entries[0].start.position
+    return model
+
+
+def describe(results: dict[str, float]) -> Iterator[str]:
+    """Describe each, and all together, in a line."""
+    bare = results["none"]
+    for name in TEN:
+        if name in results:
+            yield f"{name} adds {(results[name] - bare) * 1e6:.2f} us to a step of auv_waves"
+    yield (
+        f"a step of auv_waves: {results['all'] * 1e6:.1f} us with ten sensors, "
+        f"{bare * 1e6:.1f} us without, {results['all'] / bare:.3f} x"
+    )
