@@ -594,6 +594,16 @@ def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
         mujoco.MjData(mujoco.MjModel.from_xml_string(changed))
 
 
+def test_a_body_whose_inertia_is_kept_as_a_diagonal_has_no_room_for_water():
+    spec = loaded_barge()
+    spec.body("barge").simple = True
+    spec.delete(spec.geom("hold"))
+    for name in ("hold",):
+        spec.delete(next(one for one in spec.actuators if one.name == name))
+    with pytest.raises(ModelError, match="does not fit there; write <body simple='false'>"):
+        Buoyancy(spec.compile())
+
+
 def test_a_name_is_taken_once_and_volumes_keep_to_their_limits():
     spec = loaded_barge()
     with pytest.raises(ModelError, match="already has an actuator or a plugin instance 't'"):
