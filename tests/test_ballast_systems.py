@@ -334,6 +334,22 @@ def test_a_bladder_scales_what_waves_do_to_its_geom():
     assert np.allclose(causes["ballast"], expected, rtol=1e-12, atol=1e-12)
 
 
+def test_a_bladder_in_the_bow_of_a_hull_lifts_the_bow():
+    body = """
+    <body>
+      <freejoint/>
+      <geom name="hull" type="ellipsoid" size="0.8 0.1 0.1" mass="30"/>
+      <geom name="bow" type="sphere" size="0.03" pos="0.6 0 0" mass="0"/>
+    </body>
+    """
+    model = build(body, ("bow", Bladder(capacity=5e-4, rate=1.0)), water=Water(level=5.0))
+    data = run(model, 0.0, act=5e-4)
+    mujoco.mj_forward(model, data)
+    lift = 1000.0 * 9.81 * 5e-4
+    expected = [0.0, 0.0, lift, 0.0, -0.6 * lift, 0.0]
+    assert water_in(model).loads(data).by_cause["ballast"][1] == pytest.approx(expected, abs=1e-9)
+
+
 def test_a_bladder_brings_a_float_to_the_draft_that_statics_say():
     body = SPAR.replace('axis="0 0 1"', 'axis="0 0 1" damping="60"')
     model = build(body, ("spar", Bladder(capacity=0.004, rate=0.002)), option="timestep='0.01'")
@@ -435,6 +451,7 @@ def test_inspect_reports_what_ballast_holds(tmp_path):
     result = CliRunner().invoke(app, ["inspect", str(path), "--ballast", "t=0.06"])
     assert result.exit_code == 0
     assert "Ballast systems" in result.output
+    assert "0.04, " in next(x for x in result.output.splitlines() if "lost to free surfaces" in x)
     wrong = CliRunner().invoke(app, ["inspect", str(path), "--ballast", "fore=0.06"])
     assert "the model has no ballast 'fore'; possible: t" in " ".join(wrong.output.split())
 
