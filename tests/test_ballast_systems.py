@@ -266,6 +266,31 @@ def test_water_comes_aboard_with_its_own_velocity_and_leaves_with_the_bodys():
 # shapes -------------------------------------------------------------------------------------------
 
 
+def test_a_tank_that_is_a_mesh_is_like_the_box_of_its_shape():
+    corners = " ".join(
+        f"{x} {y} {z}" for x in (-0.3, 0.3) for y in (-0.2, 0.2) for z in (-0.1, 0.1)
+    )
+    body = """
+    <body euler="5 0 0">
+      <freejoint/>
+      <geom name="hull" type="box" size="1 0.5 0.25" mass="300"/>
+      <geom name="t" {shape} pos="0.3 0.1 0.05" euler="0 0 30" mass="0" contype="0"
+        conaffinity="0"/>
+    </body>
+    """
+    ends = []
+    for shape in ('type="box" size="0.3 0.2 0.1"', 'type="mesh" mesh="box"'):
+        spec = mujoco.MjSpec.from_string(
+            f"""<mujoco><option timestep="0.01"/>
+            <asset><mesh name="box" vertex="{corners}"/></asset>
+            <worldbody>{body.format(shape=shape)}</worldbody></mujoco>"""
+        )
+        add_ballast(spec, spec.geom("t"), Tank(rate=0.01))
+        add_water(spec)
+        ends.append(run(spec.compile(), 1.0, ctrl=0.01).qpos)
+    assert np.allclose(*ends, rtol=0.0, atol=1e-6)
+
+
 @pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (0.48, -0.6, 0.64)])
 def test_water_in_a_tank_has_the_moments_of_the_solid_below_its_level(up):
     mesh, normal = shapes.capsule(0.3, 0.5), np.array(up)
@@ -584,13 +609,21 @@ def test_numbers_out_of_range_are_refused(make, message):
         ('value="t"', 'value="tt"', "'t' names the geom 'tt', and there is none"),
         ('value="0.01"', 'value="fast"', "tank rate is 'fast'; it must be a finite number"),
         ('value="t"', 'value="hull"', ""),
+        ('value="t"', 'value="pier"', "names the geom 'pier', whose body cannot move"),
+        ('value="t"', 'value="sea"', "and a plane bounds no volume"),
+        ('site="s"', 'site="quay"', "is at a site of the body 'world', and its geom moves with"),
+        ('site="s"', 'joint="j"', "is not at a site; write site='...'"),
     ],
 )
 def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
     text = f"""
     <mujoco>
       <extension><plugin plugin="buoyancy_mj.ballast"/></extension>
-      <worldbody>{MIDSHIPS.replace("<freejoint/>", '<freejoint/><site name="s"/>')}</worldbody>
+      <worldbody>
+        {MIDSHIPS.replace("<freejoint/>", '<freejoint name="j"/><site name="s"/>')}
+        <geom name="pier" type="box" size="1 1 1" pos="9 0 0"/><site name="quay"/>
+        <geom name="sea" type="plane" size="9 9 1" pos="0 0 -9"/>
+      </worldbody>
       <actuator>
         <plugin name="t" plugin="buoyancy_mj.ballast" site="s" actdim="1">
           <config key="kind" value="tank"/>
