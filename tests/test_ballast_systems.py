@@ -489,7 +489,6 @@ def loaded_barge():
         f"<mujoco><option timestep='0.01'/><worldbody>{MIDSHIPS}</worldbody></mujoco>"
     )
     spec.worldbody.bodies[0].add_site(name="hole", pos=[0.5, 0.2, -0.25])
-    spec.geom("hull").name = "hull"
     spec.worldbody.bodies[0].add_geom(
         name="hold", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.2, 0.2, 0.2], pos=[0.7, 0, 0], mass=0,
         contype=0, conaffinity=0,
@@ -656,6 +655,9 @@ def test_a_body_whose_inertia_is_kept_as_a_diagonal_has_no_room_for_water():
 
 def test_a_name_is_taken_once_and_volumes_keep_to_their_limits():
     spec = loaded_barge()
+    spec.worldbody.add_geom(name="pier", size=[1, 1, 1])
+    with pytest.raises(ModelError, match="the geom 'pier' is fixed to the world"):
+        add_ballast(spec, "pier", TANK)
     with pytest.raises(ModelError, match="already has an actuator or a plugin instance 't'"):
         add_ballast(spec, "t", TANK)
     model = spec.compile()
