@@ -266,6 +266,31 @@ def test_water_comes_aboard_with_its_own_velocity_and_leaves_with_the_bodys():
 # shapes -------------------------------------------------------------------------------------------
 
 
+def test_a_tank_that_is_a_mesh_is_like_the_box_of_its_shape():
+    corners = " ".join(
+        f"{x} {y} {z}" for x in (-0.3, 0.3) for y in (-0.2, 0.2) for z in (-0.1, 0.1)
+    )
+    body = """
+    <body euler="5 0 0">
+      <freejoint/>
+      <geom name="hull" type="box" size="1 0.5 0.25" mass="300"/>
+      <geom name="t" {shape} pos="0.3 0.1 0.05" euler="0 0 30" mass="0" contype="0"
+        conaffinity="0"/>
+    </body>
+    """
+    ends = []
+    for shape in ('type="box" size="0.3 0.2 0.1"', 'type="mesh" mesh="box"'):
+        spec = mujoco.MjSpec.from_string(
+            f"""<mujoco><option timestep="0.01"/>
+            <asset><mesh name="box" vertex="{corners}"/></asset>
+            <worldbody>{body.format(shape=shape)}</worldbody></mujoco>"""
+        )
+        add_ballast(spec, spec.geom("t"), Tank(rate=0.01))
+        add_water(spec)
+        ends.append(run(spec.compile(), 1.0, ctrl=0.01).qpos)
+    assert np.allclose(*ends, rtol=0.0, atol=1e-6)
+
+
 @pytest.mark.parametrize("up", [(0.0, 0.0, 1.0), (0.48, -0.6, 0.64)])
 def test_water_in_a_tank_has_the_moments_of_the_solid_below_its_level(up):
     mesh, normal = shapes.capsule(0.3, 0.5), np.array(up)
@@ -332,6 +357,22 @@ def test_a_bladder_scales_what_waves_do_to_its_geom():
     expected = share * (causes["buoyancy"] + causes["wave_pressure"])
     assert np.abs(causes["wave_pressure"][1]).max() > 1.0
     assert np.allclose(causes["ballast"], expected, rtol=1e-12, atol=1e-12)
+
+
+def test_a_bladder_in_the_bow_of_a_hull_lifts_the_bow():
+    body = """
+    <body>
+      <freejoint/>
+      <geom name="hull" type="ellipsoid" size="0.8 0.1 0.1" mass="30"/>
+      <geom name="bow" type="sphere" size="0.03" pos="0.6 0 0" mass="0"/>
+    </body>
+    """
+    model = build(body, ("bow", Bladder(capacity=5e-4, rate=1.0)), water=Water(level=5.0))
+    data = run(model, 0.0, act=5e-4)
+    mujoco.mj_forward(model, data)
+    lift = 1000.0 * 9.81 * 5e-4
+    expected = [0.0, 0.0, lift, 0.0, -0.6 * lift, 0.0]
+    assert water_in(model).loads(data).by_cause["ballast"][1] == pytest.approx(expected, abs=1e-9)
 
 
 def test_a_bladder_brings_a_float_to_the_draft_that_statics_say():
@@ -435,6 +476,7 @@ def test_inspect_reports_what_ballast_holds(tmp_path):
     result = CliRunner().invoke(app, ["inspect", str(path), "--ballast", "t=0.06"])
     assert result.exit_code == 0
     assert "Ballast systems" in result.output
+    assert "0.04, " in next(x for x in result.output.splitlines() if "lost to free surfaces" in x)
     wrong = CliRunner().invoke(app, ["inspect", str(path), "--ballast", "fore=0.06"])
     assert "the model has no ballast 'fore'; possible: t" in " ".join(wrong.output.split())
 
@@ -447,7 +489,6 @@ def loaded_barge():
         f"<mujoco><option timestep='0.01'/><worldbody>{MIDSHIPS}</worldbody></mujoco>"
     )
     spec.worldbody.bodies[0].add_site(name="hole", pos=[0.5, 0.2, -0.25])
-    spec.geom("hull").name = "hull"
     spec.worldbody.bodies[0].add_geom(
         name="hold", type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.2, 0.2, 0.2], pos=[0.7, 0, 0], mass=0,
         contype=0, conaffinity=0,
@@ -567,13 +608,21 @@ def test_numbers_out_of_range_are_refused(make, message):
         ('value="t"', 'value="tt"', "'t' names the geom 'tt', and there is none"),
         ('value="0.01"', 'value="fast"', "tank rate is 'fast'; it must be a finite number"),
         ('value="t"', 'value="hull"', ""),
+        ('value="t"', 'value="pier"', "names the geom 'pier', whose body cannot move"),
+        ('value="t"', 'value="sea"', "and a plane bounds no volume"),
+        ('site="s"', 'site="quay"', "is at a site of the body 'world', and its geom moves with"),
+        ('site="s"', 'joint="j"', "is not at a site; write site='...'"),
     ],
 )
 def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
     text = f"""
     <mujoco>
       <extension><plugin plugin="buoyancy_mj.ballast"/></extension>
-      <worldbody>{MIDSHIPS.replace("<freejoint/>", '<freejoint/><site name="s"/>')}</worldbody>
+      <worldbody>
+        {MIDSHIPS.replace("<freejoint/>", '<freejoint name="j"/><site name="s"/>')}
+        <geom name="pier" type="box" size="1 1 1" pos="9 0 0"/><site name="quay"/>
+        <geom name="sea" type="plane" size="9 9 1" pos="0 0 -9"/>
+      </worldbody>
       <actuator>
         <plugin name="t" plugin="buoyancy_mj.ballast" site="s" actdim="1">
           <config key="kind" value="tank"/>
@@ -594,8 +643,21 @@ def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
         mujoco.MjData(mujoco.MjModel.from_xml_string(changed))
 
 
+def test_a_body_whose_inertia_is_kept_as_a_diagonal_has_no_room_for_water():
+    spec = loaded_barge()
+    spec.body("barge").simple = True
+    spec.delete(spec.geom("hold"))
+    for name in ("hold",):
+        spec.delete(next(one for one in spec.actuators if one.name == name))
+    with pytest.raises(ModelError, match="does not fit there; write <body simple='false'>"):
+        Buoyancy(spec.compile())
+
+
 def test_a_name_is_taken_once_and_volumes_keep_to_their_limits():
     spec = loaded_barge()
+    spec.worldbody.add_geom(name="pier", size=[1, 1, 1])
+    with pytest.raises(ModelError, match="the geom 'pier' is fixed to the world"):
+        add_ballast(spec, "pier", TANK)
     with pytest.raises(ModelError, match="already has an actuator or a plugin instance 't'"):
         add_ballast(spec, "t", TANK)
     model = spec.compile()

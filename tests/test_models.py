@@ -350,3 +350,34 @@ def test_the_glider_states_the_added_mass_that_is_estimated_for_it():
     bare = Buoyancy(spec.compile(), added_mass="estimate").added_mass.matrices[0].reshape(6, 6)
     stated = estimate.added_mass.matrices[0].reshape(6, 6)
     assert np.diag(stated) == pytest.approx(np.diag(bare), rel=0.02)
+
+
+def test_the_glider_dives_and_climbs_ahead_by_one_change_of_ballast():
+    model = loaded("glider")
+    model.opt.timestep = 0.01
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("descent").id)
+    slopes, places = {}, [data.qpos[:3].copy()]
+    with Buoyancy(model).installed():
+        for volume in (0.0, 0.000464):
+            data.ctrl[0] = volume
+            end = data.time + 70.0
+            while data.time < end:
+                mujoco.mj_step(model, data)
+            slopes[volume] = np.degrees(np.arctan2(data.qvel[2], data.qvel[0]))
+            places.append(data.qpos[:3].copy())
+    assert slopes[0.0] == pytest.approx(-25.0, abs=0.5)
+    assert slopes[0.000464] == pytest.approx(20.0, abs=0.7)
+    start, turn, end = places
+    assert turn[2] - start[2] < -9.0
+    assert end[2] - turn[2] > 4.0
+    assert start[0] + 15.0 < turn[0] < end[0] - 13.0
+    # the bow goes up with it, to where statics without wings have it
+    assert np.degrees(2.0 * np.arcsin(-data.qpos[5])) == pytest.approx(15.5, abs=1.0)
+
+
+def test_the_glider_hovers_with_half_of_its_bladder():
+    model = loaded("glider")
+    full = hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0], ballast={"bladder": 0.000464})
+    empty = hydrostatics(model, qpos=[0, 0, -3, 1, 0, 0, 0])
+    assert full.reserve == pytest.approx(-empty.reserve, abs=1e-3)

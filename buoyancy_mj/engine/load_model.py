@@ -139,7 +139,8 @@ def build_load_model(
     owners = np.array([hull.body for hull in hulls])
     placed = find_ballasts(model, bodies)
     check_ballast(model, placed, hulls)
-    bladders = [one for one in placed if not one.holds_water]
+    rows = _find_rows(placed, hulls)
+    bladders = [one for one in placed if rows.get(one.name, -1) >= len(hulls)]
     packed = settings.method.pack(_list_hulls(hulls, bladders), water)
 
     # what acts on them
@@ -163,9 +164,7 @@ def build_load_model(
         added_mass=resolve_added_mass(
             model, hulls, water.density, settings.added_mass, foils, slamming=settings.slamming
         ),
-        ballast=gather_ballast(
-            placed, {one.name: len(hulls) + i for i, one in enumerate(bladders)}
-        ),
+        ballast=gather_ballast(placed, rows),
     )
     if arrays.damping.radiates and not isinstance(packed, PackedHulls):
         radiating = arrays.damping.bodies[arrays.damping.radiation.any(axis=1)]
@@ -176,6 +175,30 @@ def build_load_model(
             "Damping(radiation=False), in a scene damping.radiation = false"
         )
     return LoadModel(hulls, sizes, packed, conform(arrays))
+
+
+def _find_rows(placed: Sequence[PlacedBallast], hulls: Sequence[Hull]) -> dict[str, int]:
+    """The row of each bladder's geom in `Record.wet`, by its name.
+
+    It is that of a hull which is that geom alone, or one behind the hulls.
+    """
+    alone = {
+        hull.geoms[0]: (row, hull.mesh.volume)
+        for row, hull in enumerate(hulls)
+        if len(hull.geoms) == 1 and hull.fill == 1.0
+    }
+    rows: dict[str, int] = {}
+    end = len(hulls)
+    for one in placed:
+        if one.holds_water:
+            continue
+        row, volume = alone.get(one.geom, (-1, 0.0))
+        if row >= 0 and volume == one.mesh.volume:
+            rows[one.name] = row
+        else:
+            rows[one.name] = end
+            end += 1
+    return rows
 
 
 def _list_hulls(hulls: Sequence[Hull], bladders: Sequence[PlacedBallast]) -> HullSet:

@@ -16,6 +16,7 @@ from buoyancy_mj.inspection.tables import (
 )
 from buoyancy_mj.inspection.vessels import BuoyancyBudget, VesselInspection
 from buoyancy_mj.statics.equilibrium import Equilibrium
+from buoyancy_mj.statics.hydrostatics import Hydrostatics
 from buoyancy_mj.statics.righting import RightingArm
 
 _CARRIED = 2
@@ -111,6 +112,7 @@ def _describe_rest(title: str, rest: Equilibrium) -> Section:
         ("KB, KG, BG", format_numbers((at.KB, at.KG, at.BG)), "m"),
         ("BM across, along", format_numbers((at.BMt, at.BMl)), "m"),
         ("GM across, along", format_numbers((at.GMt, at.GMl)), "m"),
+        *_describe_free_surface(at),
         (
             "periods of heave, roll, pitch",
             format_numbers(at.natural_periods()),
@@ -121,6 +123,14 @@ def _describe_rest(title: str, rest: Equilibrium) -> Section:
         ("stability", rest.stability, eigenvalues),
     )
     return Section(title, (), rows)
+
+
+def _describe_free_surface(at: Hydrostatics) -> tuple[tuple[str, str, str], ...]:
+    """What the water in tanks takes off GM; nothing without free surfaces."""
+    if not at.free_surface.any():
+        return ()
+    lost = (at.KMt - at.KG - at.GMt, at.KMl - at.KG - at.GMl)
+    return (("of it lost to free surfaces", format_numbers(lost), "m"),)
 
 
 def _compare_rests(title: str, rests: Sequence[Equilibrium]) -> Section:

@@ -63,8 +63,8 @@ def add_ballast(
         The actuator.
 
     Raises:
-        ModelError: no such geom or opening, or a name that is taken. What only a compiled model
-            shows is refused when it is compiled.
+        ModelError: no such geom or opening, a geom of the world, or a name that is taken. What only
+            a compiled model shows is refused when it is compiled.
 
     Example:
         >>> add_ballast(spec, "nose", Bladder(capacity=5e-4, rate=2e-5))
@@ -79,6 +79,11 @@ def add_ballast(
             f"ballast is {describe(ballast)}; it must be a Bladder, a Tank or a Compartment"
         )
     shape = _find_geom(spec, geom)
+    if shape.parent == spec.worldbody:
+        raise ModelError(
+            f"the geom '{shape.name}' is fixed to the world, where ballast moves nothing; "
+            "name one of a body that can move"
+        )
     name = name or shape.name
     taken = {actuator.name for actuator in spec.actuators}
     instances = {plugin.name for plugin in spec.plugins}
