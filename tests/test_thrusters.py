@@ -549,9 +549,11 @@ def test_a_model_knows_its_thruster_again(thruster):
 
 
 def test_another_actuator_is_no_thruster():
-    model = mujoco.MjModel.from_xml_string(WRITTEN.replace("<plugin name", "<motor name").replace(
-        'plugin="buoyancy_mj.thruster" site="a" actdim="1"', 'site="a"'
-    ).replace('<config key="preset" value="t200"/></plugin>', "</motor>"))  # fmt: skip
+    model = mujoco.MjModel.from_xml_string("""
+        <mujoco>
+          <worldbody><body><freejoint/><geom size="1"/><site name="a"/></body></worldbody>
+          <actuator><motor site="a"/></actuator>
+        </mujoco>""")
     assert find_thruster(model, 0) is None
     assert read_thrusters(model, mujoco.MjData(model)) == ()
 
@@ -559,9 +561,13 @@ def test_another_actuator_is_no_thruster():
 WRITTEN = """
 <mujoco>
   <extension><plugin plugin="buoyancy_mj.thruster"/></extension>
-  <worldbody><body><freejoint name="j"/><geom size=".1"/><site name="a"/><site name="b"/></body></worldbody>
+  <worldbody>
+    <body><freejoint name="j"/><geom size=".1"/><site name="a"/></body>
+  </worldbody>
   <actuator>
-    <plugin name="main" plugin="buoyancy_mj.thruster" site="a" actdim="1" gear="0 0 1 0 0 -.012"><config key="preset" value="t200"/></plugin>
+    <plugin name="main" plugin="buoyancy_mj.thruster" site="a" actdim="1" gear="0 0 1 0 0 -.012">
+      <config key="preset" value="t200"/>
+    </plugin>
   </actuator>
 </mujoco>
 """

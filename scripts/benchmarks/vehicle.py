@@ -1,7 +1,7 @@
-"""What sensors add to a step."""
+"""What the equipment of a vehicle adds to a step: its eight thrusters, and ten sensors."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
@@ -37,21 +37,27 @@ TEN = {
     "hydrophone": Hydrophone(noise=0.1),
 }
 """One of each kind, and depth twice; each reads in each step."""
+COMMANDS = (10.0, -10.0, -10.0, 10.0, 10.0, 10.0, -10.0, -10.0)
+"""Of the thrusters [N]: together they do nothing, so that the vehicle goes as it does without."""
 STEPS, STRETCHES = 20, 50
 """Steps of a stretch that is timed, and how many of them make the ten seconds of the scene."""
 
 
 def measure(quick: bool) -> dict[str, float]:
-    """Measure a mean step of `auv_waves` [s]: without sensors, with each of the ten, with all."""
-    choices = {"none": [], **{name: [name] for name in TEN}, "all": list(TEN)}
-    if quick:
-        choices = {"none": [], "all": list(TEN)}
-    models = {label: build(names) for label, names in choices.items()}
+    """Measure a mean step of `auv_waves` [s]: bare, with each piece of equipment, with all."""
+    models = {
+        "none": build([], thrusters=False),
+        "thrusters": build([], thrusters=True),
+        "all": build(list(TEN), thrusters=True),
+    }
+    if not quick:
+        models |= {name: build([name], thrusters=False) for name in TEN}
     times = {label: np.full(STRETCHES, np.inf) for label in models}
     # time of the thread, in turns and in short stretches, the best of each: others may be at work
     for _ in range(3 if quick else 10):
         for label, model in models.items():
             data = mujoco.MjData(model)
+            data.ctrl[:] = COMMANDS[: model.nu]
             for stretch in range(STRETCHES):
                 started = time.thread_time()
                 mujoco.mj_step(model, data, STEPS)
@@ -60,7 +66,7 @@ def measure(quick: bool) -> dict[str, float]:
     return {label: float(best.mean()) for label, best in times.items()}
 
 
-def build(names: list[str]) -> mujoco.MjModel:
+def build(names: Sequence[str], *, thrusters: bool) -> mujoco.MjModel:
     """The vehicle of the scene in its waves over a floor, with some of the ten sensors alone."""
     scene = read_scene(catalog.scenes()["auv_waves"])
     spec = read_vehicle(catalog.model_path(scene.entries[0].model, scene.folder))
@@ -68,8 +74,11 @@ def build(names: list[str]) -> mujoco.MjModel:
     spec.option.integrator = INTEGRATORS[scene.integrator.lower()]
     spec.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[0, 0, 1], pos=[0, 0, -8])
     spec.worldbody.add_site(name="pinger", pos=[8, 3, -2])
-    for sensor in [each for each in spec.sensors if each.plugin.active]:
-        spec.delete(sensor)
+    taken = [sensor for sensor in spec.sensors if sensor.plugin.active]
+    if not thrusters:
+        taken += [*spec.actuators, *spec.keys]
+    for element in taken:
+        spec.delete(element)
     add_water(spec, scene)
     for name in names:
         add_sensor(spec, "imu", TEN[name], name=name)
@@ -81,10 +90,10 @@ def build(names: list[str]) -> mujoco.MjModel:
 def describe(results: dict[str, float]) -> Iterator[str]:
     """Describe each, and all together, in a line."""
     bare = results["none"]
-    for name in TEN:
+    for name in (*TEN, "thrusters"):
         if name in results:
-            yield f"{name} adds {(results[name] - bare) * 1e6:.2f} us to a step of auv_waves"
+            yield f"{name}: {(results[name] - bare) * 1e6:+.2f} us on a step of auv_waves"
     yield (
-        f"a step of auv_waves: {results['all'] * 1e6:.1f} us with ten sensors, "
+        f"a step of auv_waves: {results['all'] * 1e6:.1f} us with eight thrusters and ten sensors, "
         f"{bare * 1e6:.1f} us without, {results['all'] / bare:.3f} x"
     )
