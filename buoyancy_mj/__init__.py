@@ -71,6 +71,8 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+from buoyancy_mj.vehicle.allocation import Allocation as Allocation
+from buoyancy_mj.vehicle.allocation import allocation as allocation
 
 __version__ = _version("buoyancy_mj")
 
