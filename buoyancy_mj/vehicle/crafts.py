@@ -1,6 +1,7 @@
 """`Craft`: the bodies of one vehicle that moves as a whole, and what drives it."""
 
 import dataclasses
+import functools
 
 import mujoco
 import numpy as np
@@ -20,13 +21,25 @@ class Craft:
     """Name of its root body."""
     bodies: NDArray[np.int64]
     """Indices of its bodies, the root body first."""
-    drives: tuple[Drive, ...]
-    """What pushes it, in the order of the model."""
+    model: mujoco.MjModel
+    """The model."""
 
     @property
     def root(self) -> int:
         """Index of its root body."""
         return int(self.bodies[0])
+
+    @functools.cached_property
+    def drives(self) -> tuple[Drive, ...]:
+        """What pushes it, in the order of the model.
+
+        Raises:
+            ModelError: the thrust of an actuator does not follow from its control.
+        """
+        bodies = self.model.site_bodyid
+        return tuple(
+            drive for drive in find_drives(self.model) if bodies[drive.site] in self.bodies
+        )
 
 
 def find_craft(model: mujoco.MjModel, body: str | int | None = None) -> Craft:
@@ -40,13 +53,8 @@ def find_craft(model: mujoco.MjModel, body: str | int | None = None) -> Craft:
     Raises:
         ModelError: there is no such vehicle, or several are possible.
     """
-    drives = find_drives(model)
     crafts = [
-        Craft(
-            name=body_name(model, int(bodies[0])),
-            bodies=bodies,
-            drives=tuple(drive for drive in drives if model.site_bodyid[drive.site] in bodies),
-        )
+        Craft(body_name(model, int(bodies[0])), bodies, model)
         for bodies in group_floating_bodies(model)
     ]
     if body is not None:
