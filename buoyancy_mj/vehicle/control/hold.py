@@ -38,10 +38,11 @@ class Hold(Control):
         ControlError: a value that makes no sense, or way-points beside a place.
 
     Example:
-        >>> Hold(depth=0.8, heading=0.0, waypoints=())
+        >>> Hold(position=(0.0, 0.0), depth=0.8, heading=0.0)
     """
 
     needs_rest: ClassVar[bool] = True
+    """It asks what the water does at rest when it starts."""
 
     position: tuple[float, float] | None = None
     """Place of the root body's origin (2,) [m], world frame."""

@@ -51,6 +51,7 @@ class Lqr(Control):
     """
 
     needs_rest: ClassVar[bool] = True
+    """It asks what the water does at rest when it starts."""
 
     position: tuple[float, float] | None = None
     """Place of rest of the root body's origin (2,) [m], world frame; None for that of the start."""
