@@ -162,18 +162,21 @@ class HoldController:
         self._unwinding = 0.5 * hold.bandwidth
 
         # where to be
-        motion = self._reader.read(outset.data)
-        self.course = _plan_course(hold, motion, outset.level)
+        self._hold, self._level = hold, outset.level
+        self.course: Course
         """Where the vehicle should be."""
-        self._force, self._torque = np.zeros(3), np.zeros(3)
-        self._time: float | None = None
+        self._time: float
+        self._force: NDArray[np.float64]
+        self._torque: NDArray[np.float64]
+        self._begin(self._reader.read(outset.data), float(outset.data.time))
 
     def __call__(self, _: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Write the controls of the thrusters."""
-        time = float(data.time)
-        timestep = 0.0 if self._time is None else max(0.0, time - self._time)
-        self._time = time
-        motion = self._reader.read(data)
+        time, motion = float(data.time), self._reader.read(data)
+        if time < self._time:
+            # the data were reset
+            self._begin(motion, time)
+        timestep, self._time = time - self._time, time
         reference = self.course.advance(motion, time, timestep)
 
         # errors of place along the axes of the heading, of attitude along those of the body
@@ -205,6 +208,12 @@ class HoldController:
         change = self._held * (gains.integral * error - self._unwinding * missed) * timestep
         self._force = self._force + turn @ change[:3]
         self._torque = self._torque + change[3:]
+
+    def _begin(self, motion: Motion, time: float) -> None:
+        """Plan the course from where the vehicle is at a time [s], with nothing learnt."""
+        self.course = _plan_course(self._hold, motion, self._level)
+        self._force, self._torque = np.zeros(3), np.zeros(3)
+        self._time = time
 
 
 def _check_axes(hold: Hold, allocation: Allocation, name: str) -> None:
