@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ControlError, choices, describe
 from buoyancy_mj.values import read_array, set_number
