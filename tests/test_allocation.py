@@ -174,7 +174,8 @@ def test_actuators_that_push_nothing_alone_are_no_drives():
         (
             '<general name="port" site="port" gear="0 0 1 0 0 0" dyntype="integrator"/>',
             "the thrust of actuator 'port' does not follow from its control: its dyntype is not "
-            "that of a motor; give it <motor>, or put it into a group that is disabled",
+            "that of a motor or of a thruster; give it one of these, or put it into a group that is "
+            "disabled",
         ),
         ("", "no actuator pushes 'rov' at a site; give it motors or thrusters at sites"),
     ],

@@ -6,8 +6,10 @@ from typing import Protocol
 
 import mujoco
 import numpy as np
+from numpy.typing import ArrayLike
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.vehicle.thrusters import find_thruster
 
 _STEADY = (
     int(mujoco.mjtDyn.mjDYN_NONE),
@@ -26,7 +28,7 @@ class Curve(Protocol):
     def limits(self) -> tuple[float, float]:
         """Least and most thrust [N]."""
 
-    def command(self, thrust: float) -> float:
+    def command(self, thrust: float, /) -> ArrayLike:
         """The control that brings a thrust [N] within the limits."""
 
 
@@ -87,7 +89,7 @@ class Drive:
     def command(self, thrust: float) -> float:
         """The control that brings a steady thrust [N] in water at rest, within the limits."""
         least, most = self.curve.limits()
-        return self.curve.command(min(max(thrust, least), most))
+        return float(np.asarray(self.curve.command(min(max(thrust, least), most))))
 
 
 def find_drives(model: mujoco.MjModel) -> tuple[Drive, ...]:
@@ -118,7 +120,7 @@ def _read_drive(model: mujoco.MjModel, actuator: int) -> Drive:
         control=int(model.actuator_ctrladr[actuator]),
         site=int(model.actuator_trnid[actuator, 0]),
         wrench=tuple((gear / scale).tolist()),
-        curve=_read_motor(model, actuator, scale),
+        curve=find_thruster(model, actuator) or _read_motor(model, actuator, scale),
     )
 
 
@@ -135,10 +137,12 @@ def _read_motor(model: mujoco.MjModel, actuator: int, scale: float) -> Motor:
     odd = [key for values, known, key in kinds if values[actuator] not in known]
     if odd or gain == 0.0 or model.actuator_ctrlnum[actuator] != 1:
         why = f"its {' and '.join(odd)}" if odd else "its gain or number of controls"
+        if model.actuator_plugin[actuator] >= 0:
+            why = "its plugin"
         raise ModelError(
             f"the thrust of actuator '{model.actuator(actuator).name}' does not follow from its "
-            f"control: {why} is not that of a motor; give it <motor>, or put it into a group that "
-            "is disabled"
+            f"control: {why} is not that of a motor or of a thruster; give it one of these, or put "
+            "it into a group that is disabled"
         )
 
     # the narrower of both limits
