@@ -72,7 +72,7 @@ class Hold(Control):
     heading_gains: tuple[float, float, float] | None = None
     """Gains of yaw (3,) [N m/rad, N m/(rad s), N m s/rad]."""
     sensors: ControlSensors | None = None
-    """ControlSensors to read in the place of the true state."""
+    """Sensors to read in the place of the true state."""
 
     def __post_init__(self) -> None:
         super().__post_init__()
