@@ -323,8 +323,8 @@ def test_what_the_thrusters_cannot_hold_must_be_free():
     names = [name for name in PLACES if name != "up_front"]
     model, data = box(names)
     message = (
-        "the thrusters of 'rov' do not push along pitch alone in both directions, and its pitch "
-        "cannot be held; put 'pitch' into free"
+        "the thrusters of 'rov' do not push along pitch alone in both directions, which a hold "
+        "needs; give it free = ['pitch']"
     )
     with pytest.raises(ControlError) as caught:
         start_controller(Hold(), model, data)
