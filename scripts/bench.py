@@ -10,6 +10,7 @@ All values are medians or means over repeats:
   immersed_part, on the same meshes and poses;
 - tree: the tree of moments against visiting all triangles;
 - step: a step of a scene with water against the same step without;
+- vehicle: a step of a vehicle with its equipment against the same without;
 - sea: a sea of 64 waves against one wave;
 - batch: batches on one thread and on two;
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
@@ -23,7 +24,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks import statics, steps, submersion, tree
+from benchmarks import statics, steps, submersion, tree, vehicle
 from rich.console import Console
 from rich.table import Table
 
@@ -41,6 +42,7 @@ BENCHMARKS = {
     "submersion": Benchmark(submersion.measure, submersion.describe),
     "tree": Benchmark(tree.measure, tree.describe),
     "step": Benchmark(steps.measure_step, steps.describe_step),
+    "vehicle": Benchmark(vehicle.measure, vehicle.describe),
     "sea": Benchmark(steps.measure_sea, steps.describe_sea),
     "batch": Benchmark(steps.measure_batch, steps.describe_batch),
     "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time),

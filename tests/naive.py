@@ -322,3 +322,19 @@ def differentiate_step(model, data, step=1e-6):
         mujoco.mj_differentiatePos(model, way, 2.0 * step, behind, ahead)
         columns.append(np.append(way, (faster - slower) / (2.0 * step)))
     return np.split(np.array(columns).T, [2 * model.nv], axis=1)
+
+
+def wet_disc(depth, axis, radius, slopes, cells=2000):
+    """Share of a disc under a plane of the surface, by points over the disc.
+
+    The middle of the disc is `depth` under the plane, along z; `slopes` are those of the plane.
+    """
+    axis = np.asarray(axis, float) / np.linalg.norm(axis)
+    one = np.cross(axis, [1.0, 0.0, 0.0] if abs(axis[0]) < 0.5 else [0.0, 1.0, 0.0])
+    one /= np.linalg.norm(one)
+    two = np.cross(axis, one)
+    places = (np.arange(cells) + 0.5) / cells
+    radii = radius * np.sqrt(places[:, None])
+    angles = 2.0 * np.pi * places[None, ::10]
+    points = [radii * (np.cos(angles) * one[k] + np.sin(angles) * two[k]) for k in range(3)]
+    return float(np.mean(depth + slopes[0] * points[0] + slopes[1] * points[1] - points[2] > 0.0))

@@ -10,7 +10,7 @@ ROOT = Path(__file__).parent.parent
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["submersion", "tree", "sea", "statics"])
+@pytest.mark.parametrize("name", ["submersion", "tree", "sea", "statics", "vehicle"])
 def test_a_benchmark_measures_and_prints(name, tmp_path):
     command = [sys.executable, "scripts/bench.py", "--quick", "--only", name]
     command += ["--save", str(tmp_path / "saved.json")]

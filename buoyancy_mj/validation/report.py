@@ -20,6 +20,7 @@ from buoyancy_mj.validation import (
     remus_100,
     roll_decay,
     terminal_speeds,
+    thrusters,
     waves,
 )
 from buoyancy_mj.validation.case import Case, Row
@@ -34,6 +35,7 @@ _MODULES = (
     entries,
     foils,
     terminal_speeds,
+    thrusters,
     waves,
     currents,
     depths,

@@ -246,7 +246,8 @@ class Thruster:
         asked = np.where(np.abs(asked) < self.deadband, 0.0, asked)
         demands = self.curves.demands
         if not len(demands):
-            return np.clip(asked, *self.limits())
+            bounded: NDArray[np.float64] = np.clip(asked, *self.limits())
+            return bounded
         return self.curves.thrust_of(np.interp(asked, demands[:, 0], demands[:, 1]))
 
     def command(self, thrust: ArrayLike) -> NDArray[np.float64]:
@@ -254,7 +255,7 @@ class Thruster:
 
         Where no command has a pull that is too small, it is that at which the rotor stands.
         """
-        wanted = np.clip(np.asarray(thrust, float), *self.limits())
+        wanted: NDArray[np.float64] = np.clip(np.asarray(thrust, float), *self.limits())
         demands = self.curves.demands
         if not len(demands):
             return wanted
@@ -269,4 +270,5 @@ class Thruster:
                 rows = rows[rests[-1] :] if side > 0.0 else rows[: rests[0] + 1]
             here = speeds * side > 0.0
             commands = np.where(here, np.interp(speeds, rows[:, 1], rows[:, 0]), commands)
-        return commands + self.neutral
+        answer: NDArray[np.float64] = commands + self.neutral
+        return answer

@@ -20,9 +20,9 @@ from buoyancy_mj.vehicle.thruster_texts import KEYS, parse_thruster
 PLUGIN = "buoyancy_mj.thruster"
 """Name of the engine plugin."""
 RECOVERY = 10.0
-"""Revolutions in which air leaves a propeller, where it does not say. Thrust is seen to return later
-than it was lost (Smogeli 2006, NTNU thesis 2006:187; Kozlowska et al. 2020, *J. Mar. Sci. Eng.*
-8). The number is an estimate: the lift of a blade alone comes back within one (Wagner 1925)."""
+"""Revolutions in which air leaves a propeller that does not say so. Thrust is seen to return later
+than it was lost (Smogeli 2006, NTNU thesis 2006:187; Kozlowska et al. 2020, *J. Mar. Sci. Eng.* 8).
+The number is an estimate: the lift of a blade alone comes back within one (Wagner 1925)."""
 
 
 def read_thruster(model: mujoco.MjModel, actuator: int) -> Thruster:

@@ -2,8 +2,6 @@
 
 from typing import Annotated, NamedTuple
 
-import numpy as np
-
 from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths
 from buoyancy_mj.kernels.multibody import Bodies, Geoms, Joints, Option
 
@@ -22,8 +20,6 @@ class Sites(NamedTuple):
 class Actuators(NamedTuple):
     """Commands, states and forces."""
 
-    actuator_group: Annotated[Int32s, "mjModel", ("nactuator",)]
-    """Groups, which an option may switch off."""
     actuator_ctrllimited: Annotated[Truths, "mjModel", ("nu",)]
     """Whether the range of commands holds."""
     actuator_ctrlrange: Annotated[Doubles, "mjModel", ("nu", 2)]
@@ -53,10 +49,6 @@ class Equipment(NamedTuple):
     """All that a device reads of the engine, and the arrays that it writes to."""
 
     option: Option
-    integrator: Annotated[np.int32, "mjModel.opt"]
-    """One of mjtIntegrator."""
-    disableactuator: Annotated[np.int32, "mjModel.opt"]
-    """Bits of the groups of actuators that are switched off."""
     time: Annotated[float, "mjData"]
     """[s]."""
     bodies: Bodies

@@ -32,13 +32,15 @@ def ventilated_share(
     radius,  # [m]
     wet,  # share of the disc under water
 ):
-    """Share of the thrust that air leaves to the wet part of a disc.
+    """Share of the thrust that air leaves to the wet part of a disc; 0 for a disc in the air.
 
     1 - 0.675 (1 - 0.769 h/R)^1.258 of the thrust is left for h/R below 1.3 (Minsaas, Faltinsen and
     Persson 1983, PRADS, Tokyo). That holds the loss of the disc's area too, which is the wet share.
     """
     x = depth / radius
-    if x >= DEEP or wet <= 0.0:
+    if x >= DEEP:
         return 1.0
+    if wet <= 0.0:
+        return 0.0
     left = 1.0 - 0.675 * (1.0 - 0.769 * x) ** 1.258
     return min(max(left / wet, 0.0), 1.0)

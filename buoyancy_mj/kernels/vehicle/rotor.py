@@ -79,9 +79,13 @@ def spin(
     where that is beyond the motor's limit, the rest of it turns the rotor, with the water's torque
     as the square of the speed.
     """
-    rate, decay = (target - speed) / lag, 1.0 / lag
+    rate = (target - speed) / lag
+    governed = hold_rate(rate, 1.0 / lag, timestep, integrator)
     torque = inertia * rate + load
-    if abs(torque) > limit:
-        rate = (math.copysign(limit, torque) - load) / inertia
-        decay = 2.0 * abs(load) / (inertia * max(abs(speed), 1.0))
-    return hold_rate(rate, decay, timestep, integrator)
+    if abs(torque) <= limit:
+        return governed
+    bound = math.copysign(limit, torque)
+    decay = 2.0 * abs(load) / (inertia * max(abs(speed), 1.0))
+    driven = hold_rate((bound - load) / inertia, decay, timestep, integrator)
+    # the motor stops pushing where the gap is closed within the step
+    return min(governed, driven) if torque > 0.0 else max(governed, driven)

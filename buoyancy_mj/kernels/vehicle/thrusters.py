@@ -3,9 +3,10 @@
 import math
 from typing import Annotated, NamedTuple
 
+import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels.arrays import Doubles
+from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.vehicle.devices import Device
@@ -90,6 +91,62 @@ class Propulsor(NamedTuple):
     """Room for the water's velocity [m/s]."""
 
 
+class Surroundings(NamedTuple):
+    """All that a thruster reads of the engine, and the arrays that it writes to.
+
+    A call hands each array on by seven words, so that these are as few as can be.
+    """
+
+    timestep: Annotated[float, "mjModel.opt"]
+    """[s]."""
+    disableflags: Annotated[np.int32, "mjModel.opt"]
+    """Bits of mjtDisableBit."""
+    integrator: Annotated[np.int32, "mjModel.opt"]
+    """One of mjtIntegrator."""
+    disableactuator: Annotated[np.int32, "mjModel.opt"]
+    """Bits of the groups of actuators that are switched off."""
+    time: Annotated[float, "mjData"]
+    """[s]."""
+    body_rootid: Annotated[Int32s, "mjModel", ("nbody",)]
+    """Root of the kinematic tree of each body."""
+    body_parentid: Annotated[Int32s, "mjModel", ("nbody",)]
+    """Parent of each body."""
+    body_dofnum: Annotated[Int32s, "mjModel", ("nbody",)]
+    """Degrees of freedom of each body's joints."""
+    body_dofadr: Annotated[Int32s, "mjModel", ("nbody",)]
+    """The first of them."""
+    dof_parentid: Annotated[Int32s, "mjModel", ("nv",)]
+    """The next degree of freedom towards the world; -1 for none."""
+    subtree_com: Annotated[Doubles, "mjData", ("nbody", 3)]
+    """Centre of mass of each body and all below it [m]."""
+    cvel: Annotated[Doubles, "mjData", ("nbody", 6)]
+    """Rotation [rad/s], then translation [m/s] at the root's centre of mass."""
+    cdof: Annotated[Doubles, "mjData", ("nv", 6)]
+    """Axes of the degrees of freedom: rotation, then translation there."""
+    site_bodyid: Annotated[Int32s, "mjModel", ("nsite",)]
+    """Body of each site."""
+    site_xpos: Annotated[Doubles, "mjData", ("nsite", 3)]
+    """Origins of the sites [m]."""
+    site_xmat: Annotated[Doubles, "mjData", ("nsite", 9)]
+    """world_from_site, row-major."""
+    actuator_group: Annotated[Int32s, "mjModel", ("nactuator",)]
+    """Groups of the actuators, which an option may switch off."""
+    actuator_ctrllimited: Annotated[Truths, "mjModel", ("nu",)]
+    """Whether the range of commands holds."""
+    actuator_ctrlrange: Annotated[Doubles, "mjModel", ("nu", 2)]
+    """Least and most command."""
+    ctrl: Annotated[Doubles, "mjData", ("nu",)]
+    """Commands."""
+    act: Annotated[Doubles, "mjData", ("na",)]
+    """States of the actuators."""
+    act_dot: Annotated[Doubles, "mjData", ("na",)]
+    """Their rates [1/s]."""
+    actuator_force: Annotated[Doubles, "mjData", ("nout",)]
+    """Forces along the actuators [N]."""
+    qfrc_passive: Annotated[Doubles, "mjData", ("nv",)]
+    """Generalized passive forces."""
+
+
 class Moment(NamedTuple):
     """What a thruster does at one instant."""
 
@@ -109,71 +166,70 @@ class Moment(NamedTuple):
     """The same where it would stay."""
 
 
-@njit(cache=True, error_model="numpy")
-def is_disabled(p, equipment):
+@njit(cache=True, error_model="numpy", inline="always")
+def is_disabled(p, around):
     """Whether the group of the actuator is switched off."""
-    group = equipment.actuators.actuator_group[p.actuator]
-    return 0 <= group < 31 and (equipment.disableactuator >> group) & 1 != 0
+    group = around.actuator_group[p.actuator]
+    return 0 <= group < 31 and (around.disableactuator >> group) & 1 != 0
 
 
-@njit(cache=True, error_model="numpy")
-def hear(p, equipment):
+@njit(cache=True, error_model="numpy", inline="always")
+def hear(p, around):
     """The command, from the one at which the rotor stands; 0 for none."""
-    actuators = equipment.actuators
-    command = actuators.ctrl[p.address]
+    command = around.ctrl[p.address]
     # no number is no command, as for MuJoCo's own actuators
     if not math.isfinite(command) or command < p.absent:
         return 0.0
-    clamps = equipment.option.disableflags & NO_CLAMP == 0
-    if clamps and actuators.actuator_ctrllimited[p.address]:
-        bounds = actuators.actuator_ctrlrange[p.address]
+    clamps = around.disableflags & NO_CLAMP == 0
+    if clamps and around.actuator_ctrllimited[p.address]:
+        bounds = around.actuator_ctrlrange[p.address]
         command = min(max(command, bounds[0]), bounds[1])
     return command - p.neutral
 
 
-@njit(cache=True, error_model="numpy")
-def find_speed(p, equipment):
+@njit(cache=True, error_model="numpy", inline="always")
+def find_speed(p, around):
     """The speed of the rotor now [rev/s]."""
     if p.state < 0:
-        return demand_speed(hear(p, equipment), p.deadband, p.demands, p.curve)
-    followed = equipment.actuators.act[p.state]
+        return demand_speed(hear(p, around), p.deadband, p.demands, p.curve)
+    followed = around.act[p.state]
     if p.inertia > 0.0:
         return followed / (2.0 * math.pi)
     return demand_speed(followed, p.deadband, p.demands, p.curve)
 
 
-@njit(cache=True, error_model="numpy")
-def find_inflow(p, equipment, sea, at, axis):
+@njit(cache=True, error_model="numpy", inline="always")
+def find_inflow(p, around, sea, at, axis):
     """Velocity of the disc through the water along its thrust [m/s]."""
-    body = equipment.sites.site_bodyid[p.site]
-    u, v, w = find_velocity(equipment.bodies, body, at)
+    body = around.site_bodyid[p.site]
+    u, v, w = find_velocity(around, body, at)
     water = p.water
-    set_water_velocity(sea, at, equipment.time, water)
+    set_water_velocity(sea, at, around.time, water)
     along = (u - water[0]) * axis[0] + (v - water[1]) * axis[1] + (w - water[2]) * axis[2]
     return (1.0 - p.wake) * along
 
 
-@njit(cache=True, error_model="numpy")
-def look(p, equipment, sea):
+@njit(cache=True, error_model="numpy", inline="always")
+def look(p, around, sea):
     """The `Moment` of a thruster."""
-    at = triple(equipment.sites.site_xpos, p.site, 0)
-    frame = equipment.sites.site_xmat[p.site]
+    at = triple(around.site_xpos, p.site, 0)
+    frame = around.site_xmat[p.site]
     axis = (frame[2], frame[5], frame[8])
-    speed = find_speed(p, equipment)
+    speed = find_speed(p, around)
 
     # the plane of the surface over the disc, and how it cuts the disc
-    eta, gx, gy = tangent(sea.waves, at[0], at[1], equipment.time)
+    eta, gx, gy = tangent(sea.waves, at[0], at[1], around.time)
     steep = math.sqrt(1.0 + gx * gx + gy * gy)
     depth = (sea.level + eta - at[2]) / steep
     along = (axis[2] - gx * axis[0] - gy * axis[1]) / steep
     radius = 0.5 * p.diameter
     wet = wet_share(depth, math.sqrt(max(1.0 - along * along, 0.0)), radius)
-    if wet == 0.0:
-        return Moment(speed, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     lost = airy = 0.0
     if p.air >= 0:
         airy = 1.0 - ventilated_share(depth, radius, wet)
-        lost = min(max(equipment.actuators.act[p.air], 0.0), 1.0)
+        lost = min(max(around.act[p.air], 0.0), 1.0)
+    if wet == 0.0:
+        return Moment(speed, 0.0, 0.0, 0.0, 0.0, lost, airy)
 
     # bollard pull, what the flow leaves of it, and what the flow does to the blades
     square = signed_square(speed)
@@ -184,7 +240,7 @@ def look(p, equipment, sea):
     torque = beyond * interpolate(p.curve, SQUARE, TORQUE, known)
     inflow = drag = 0.0
     if p.advance.shape[0] > 0:
-        inflow = find_inflow(p, equipment, sea, at, axis)
+        inflow = find_inflow(p, around, sea, at, axis)
         of_thrust, of_torque, braking = meet_flow(p.advance, speed, inflow, p.diameter)
         thrust, torque = thrust * of_thrust, torque * of_torque
         drag = drag_blades(p.drag, sea.density, p.diameter, braking)
@@ -196,55 +252,49 @@ def look(p, equipment, sea):
     return Moment(speed, thrust, torque, inflow, wet, lost, airy)
 
 
-@njit(cache=True, error_model="numpy")
-def advance(p, equipment, sea):
+@njit(cache=True, error_model="numpy", inline="always")
+def advance(p, around, sea):
     """Write how fast the rotor follows, and how fast the share that air takes grows [1/s]."""
-    actuators, option = equipment.actuators, equipment.option
-    if is_disabled(p, equipment):
+    if is_disabled(p, around):
         if p.state >= 0:
-            actuators.act_dot[p.state] = 0.0
+            around.act_dot[p.state] = 0.0
         if p.air >= 0:
-            actuators.act_dot[p.air] = 0.0
+            around.act_dot[p.air] = 0.0
         return
-    now = look(p, equipment, sea)
-    command = hear(p, equipment)
+    now = look(p, around, sea)
+    command = hear(p, around)
     if p.state >= 0 and p.inertia > 0.0:
-        actuators.act_dot[p.state] = spin(
-            actuators.act[p.state],
+        around.act_dot[p.state] = spin(
+            around.act[p.state],
             2.0 * math.pi * demand_speed(command, p.deadband, p.demands, p.curve),
             now.torque,
             p.lag,
             p.inertia,
             p.limit,
-            option.timestep,
-            equipment.integrator,
+            around.timestep,
+            around.integrator,
         )
     elif p.state >= 0:
-        rate = (command - actuators.act[p.state]) / p.lag
-        actuators.act_dot[p.state] = hold_rate(
-            rate, 1.0 / p.lag, option.timestep, equipment.integrator
-        )
+        rate = (command - around.act[p.state]) / p.lag
+        around.act_dot[p.state] = hold_rate(rate, 1.0 / p.lag, around.timestep, around.integrator)
     if p.air >= 0:
         gap = now.airy - now.lost
         pace = abs(now.speed) / (1.0 if gap > 0.0 else p.recovery)
-        actuators.act_dot[p.air] = hold_rate(
-            gap * pace, pace, option.timestep, equipment.integrator
-        )
+        around.act_dot[p.air] = hold_rate(gap * pace, pace, around.timestep, around.integrator)
 
 
-@njit(cache=True, error_model="numpy")
-def push(p, equipment, sea):
+@njit(cache=True, error_model="numpy", inline="always")
+def push(p, around, sea):
     """Write the thrust to `actuator_force`, and to `qfrc_passive` the rest of the torque."""
     readings = p.device.readings
-    actuators = equipment.actuators
-    if is_disabled(p, equipment):
-        actuators.actuator_force[p.output] = 0.0
+    if is_disabled(p, around):
+        around.actuator_force[p.output] = 0.0
         readings[:] = 0.0
         return
-    now = look(p, equipment, sea)
-    actuators.actuator_force[p.output] = now.thrust
+    now = look(p, around, sea)
+    around.actuator_force[p.output] = now.thrust
     if p.hand != 0.0:
-        turn_hull(p, equipment, now)
+        turn_hull(p, around, now)
 
     readings[READ_THRUST], readings[READ_TORQUE] = now.thrust, now.torque
     readings[READ_SPEED], readings[READ_INFLOW] = now.speed, now.inflow
@@ -255,27 +305,26 @@ def push(p, equipment, sea):
     readings[READ_CURRENT] = current * max(now.torque / bollard, 0.0) if bollard != 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy")
-def turn_hull(p, equipment, now):
+@njit(cache=True, error_model="numpy", inline="always")
+def turn_hull(p, around, now):
     """Add the torque of the motor's reaction, and of the gyroscope that the rotor is.
 
     The rotor takes up the water's torque and what speeds it up; the hull gets the opposite, less
     what the transmission has put there already. H = I w z turns with the hull: -W x H.
     """
-    frame = equipment.sites.site_xmat[p.site]
+    frame = around.site_xmat[p.site]
     x, y, z = frame[2], frame[5], frame[8]
-    rate = equipment.actuators.act_dot[p.state] if p.inertia > 0.0 else 0.0
+    rate = around.act_dot[p.state] if p.inertia > 0.0 else 0.0
     about = -p.hand * (now.torque + p.inertia * rate) - p.gear * now.thrust
-    body = equipment.sites.site_bodyid[p.site]
-    turn = equipment.bodies.cvel[body]
+    body = around.site_bodyid[p.site]
+    turn = around.cvel[body]
     h = p.hand * p.inertia * 2.0 * math.pi * now.speed
     tx = about * x - h * (turn[1] * z - turn[2] * y)
     ty = about * y - h * (turn[2] * x - turn[0] * z)
     tz = about * z - h * (turn[0] * y - turn[1] * x)
 
-    joints = equipment.joints
-    i = last_dof(joints, body)
+    i = last_dof(around, body)
     while i >= 0:
-        c = joints.cdof[i]
-        equipment.qfrc_passive[i] += c[0] * tx + c[1] * ty + c[2] * tz
-        i = joints.dof_parentid[i]
+        c = around.cdof[i]
+        around.qfrc_passive[i] += c[0] * tx + c[1] * ty + c[2] * tz
+        i = around.dof_parentid[i]
