@@ -18,7 +18,13 @@ def test_benchmarks_measure_and_print(tmp_path):
     command += ["--save", str(tmp_path / "saved.json")]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    for printed in ("one submersion", "by the tree", "eight thrusters", "water's part of a step", "hull, 1,"):
+    for printed in (
+        "one submersion",
+        "by the tree",
+        "eight thrusters",
+        "water's part of a step",
+        "hull, 1,",
+    ):
         assert printed in done.stdout
     saved = json.loads((tmp_path / "saved.json").read_text())
     assert list(saved) == list(NAMES)
