@@ -22,6 +22,8 @@ _BLUE = (0.06, 0.33, 0.6, 1.0)
 _RED = (0.6, 0.0, 0.0, 1.0)
 _PINGER = (0.2, 0.2, 0.2, 1.0)
 _BALL = (1.0, 0.45, 0.05, 1.0)
+_FIRM = [0.999, 0.9999, 0.001, 0.5, 2.0]
+"""MuJoCo's solimp of the ball: so firm that it does not creep along what it clings to."""
 _STAVES = 12
 """Flat boards of which a drum is made: a cylinder of MuJoCo is full."""
 _WALL = 0.01
@@ -69,6 +71,8 @@ def add_ball(spec: mujoco.MjSpec, place: tuple[float, float, float]) -> None:
         rgba=_BALL,
         condim=6,
         friction=[1.0, 0.01, 0.01],
+        priority=1,
+        solimp=_FIRM,
         margin=0.004,
         gap=0.004,
     )
