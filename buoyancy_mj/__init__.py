@@ -18,6 +18,7 @@ from buoyancy_mj.environments.sauvc.report import MissionReport as MissionReport
 from buoyancy_mj.errors import BallastError as BallastError
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
+from buoyancy_mj.errors import ControlError as ControlError
 from buoyancy_mj.errors import DivergenceError as DivergenceError
 from buoyancy_mj.errors import EngineError as EngineError
 from buoyancy_mj.errors import EquilibriumError as EquilibriumError
@@ -76,6 +77,17 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+from buoyancy_mj.vehicle.allocation import Allocation as Allocation
+from buoyancy_mj.vehicle.allocation import allocation as allocation
+from buoyancy_mj.vehicle.control.controller import Control as Control
+from buoyancy_mj.vehicle.control.controller import Controller as Controller
+from buoyancy_mj.vehicle.control.controller import start_controller as start_controller
+from buoyancy_mj.vehicle.control.course import Waypoint as Waypoint
+from buoyancy_mj.vehicle.control.hold import Hold as Hold
+from buoyancy_mj.vehicle.control.keyframes import Keyframes as Keyframes
+from buoyancy_mj.vehicle.control.lqr import Lqr as Lqr
+from buoyancy_mj.vehicle.control.motion import Sensors as Sensors
+from buoyancy_mj.vehicle.control.program import Program as Program
 
 __version__ = _version("buoyancy_mj")
 
