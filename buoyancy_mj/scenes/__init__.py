@@ -2,6 +2,6 @@
 
 In: a scene as TOML, with changes laid over it.
 Out: frames and a summary of one run, or a table of many runs.
-May import: vehicle, engine, settings, statics, loads, submersion, hulls, sea, values, errors,
-files, records.
+May import: environments, vehicle, engine, settings, statics, loads, submersion, hulls, sea,
+values, errors, files, records.
 """

@@ -7,6 +7,7 @@ from typing import Any
 
 import mujoco
 
+from buoyancy_mj.environments.missions import MISSIONS
 from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.scenes.controls import check_controls, controls_from_tables
@@ -58,6 +59,9 @@ class Scene(Settings):
     """Several vehicles instead of the one, each with its own start and masses."""
     environment: str | None = None
     """MJCF file of the surroundings, or the name of an environment that ships."""
+    mission: str | None = None
+    """What a referee watches the vehicle do in the environment: sauvc_qualification or
+    sauvc_course."""
     duration: float = 5.0
     """Simulated time [s]."""
     timestep: float = 0.01
@@ -136,6 +140,20 @@ class Scene(Settings):
                         f"{key} is given beside [[vehicles]]; give it to one of them, "
                         f"as vehicles.0.{key}"
                     )
+
+    def _check_mission(self) -> None:
+        """Refuse a mission that nobody knows, or of which it is open who takes part."""
+        if self.mission is None:
+            return
+        if self.mission not in MISSIONS:
+            raise SceneError(
+                f"unknown mission {describe(self.mission)}; {choices(self.mission, MISSIONS)}"
+            )
+        if len(self.entries) > 1:
+            raise SceneError(
+                f"mission is '{self.mission}' beside {len(self.entries)} vehicles, and a referee "
+                "watches one; leave one vehicle, or watch it in a loop of your own"
+            )
 
     def _values_of_the_one(self) -> dict[str, Any]:
         """What the scene says of its one vehicle, by key."""

@@ -4,6 +4,7 @@ import math
 
 import mujoco
 
+from buoyancy_mj.environments.sauvc.added_mass import state_ball
 from buoyancy_mj.environments.sauvc.layout import DRUM_X, DRUM_YS, Layout
 from buoyancy_mj.environments.sauvc.pool import STILL, add_volume, find_depth
 
@@ -76,6 +77,7 @@ def add_ball(spec: mujoco.MjSpec, place: tuple[float, float, float]) -> None:
         margin=0.004,
         gap=0.004,
     )
+    state_ball(spec, "ball", BALL_RADIUS)
 
     # adhesion of a body, with the force of the control turned round
     actuator = spec.add_actuator(name="ball", target="ball", trntype=mujoco.mjtTrn.mjTRN_BODY)

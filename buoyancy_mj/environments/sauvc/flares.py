@@ -4,6 +4,7 @@ import math
 
 import mujoco
 
+from buoyancy_mj.environments.sauvc.added_mass import Rod, state_ball, state_rods
 from buoyancy_mj.environments.sauvc.pool import SWAYING, find_depth
 
 HEIGHT = 0.8
@@ -83,6 +84,7 @@ def add_flare(spec: mujoco.MjSpec, colour: str, place: tuple[float, float]) -> N
         contype=SWAYING,
     )
     _add_rim(rod, name)
+    state_rods(spec, name, [Rod((0.0, 0.0, 0.0), (0.0, 0.0, HEIGHT), RADIUS)])
 
     # the middle of a ball that touches all beads
     reach = BALL_RADIUS + _BEAD
@@ -90,7 +92,16 @@ def add_flare(spec: mujoco.MjSpec, colour: str, place: tuple[float, float]) -> N
     rod.add_site(name=name, pos=[0.0, 0.0, rise], size=[0.005] * 3, group=4)
     ball = spec.worldbody.add_body(name=f"{name}_ball", pos=[x, y, floor + rise])
     ball.add_freejoint(name=f"{name}_ball")
-    _add_ball_geom(ball, f"{name}_ball", BALL_RADIUS, BALL_MASS, _BALL)
+    ball.add_geom(
+        name=f"{name}_ball",
+        type=mujoco.mjtGeom.mjGEOM_SPHERE,
+        size=[BALL_RADIUS, 0.0, 0.0],
+        mass=BALL_MASS,
+        rgba=_BALL,
+        condim=6,
+        friction=[0.6, 0.005, 0.002],
+    )
+    state_ball(spec, f"{name}_ball", BALL_RADIUS)
 
 
 def add_orange_flare(spec: mujoco.MjSpec, place: tuple[float, float]) -> None:
@@ -118,6 +129,8 @@ def add_orange_flare(spec: mujoco.MjSpec, place: tuple[float, float]) -> None:
         density=_ORANGE_DENSITY,
         contype=SWAYING,
     )
+    rod = Rod((0.0, 0.0, 0.0), (0.0, 0.0, length), ORANGE_RADIUS)
+    state_rods(spec, "orange_flare", [rod])
 
 
 def _add_rim(rod: mujoco.MjsBody, name: str) -> None:
@@ -139,22 +152,3 @@ def _add_rim(rod: mujoco.MjsBody, name: str) -> None:
             condim=1,
             priority=1,
         )
-
-
-def _add_ball_geom(
-    body: mujoco.MjsBody,
-    name: str,
-    radius: float,
-    mass: float,
-    rgba: tuple[float, float, float, float],
-) -> None:
-    """Add the sphere of a ball, which rolling friction brings to rest on the floor."""
-    body.add_geom(
-        name=name,
-        type=mujoco.mjtGeom.mjGEOM_SPHERE,
-        size=[radius, 0.0, 0.0],
-        mass=mass,
-        rgba=rgba,
-        condim=6,
-        friction=[0.6, 0.005, 0.002],
-    )

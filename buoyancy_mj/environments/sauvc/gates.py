@@ -2,6 +2,7 @@
 
 import mujoco
 
+from buoyancy_mj.environments.sauvc.added_mass import Rod, state_rods
 from buoyancy_mj.environments.sauvc.pool import STILL, SWAYING, add_volume, find_depth
 
 WIDTH = 1.5
@@ -107,5 +108,9 @@ def add_qualification_gate(spec: mujoco.MjSpec, lane: str, place: tuple[float, f
         density=_PIPE_DENSITY,
         contype=SWAYING,
     )
+    posts = [(0.0, side * 0.5 * (WIDTH - PIPE)) for side in (-1.0, 1.0)]
+    low, high = -length - 0.5 * PIPE, -0.5 * PIPE
+    rods = [Rod((*post, low), (*post, high), 0.5 * PIPE) for post in posts]
+    state_rods(spec, f"gate_{lane}", rods)
     half = [0.5 * PIPE, 0.5 * WIDTH - PIPE, 0.5 * length]
     add_volume(body, f"gate_{lane}", [0.0, 0.0, -0.5 * (length + PIPE)], half)
