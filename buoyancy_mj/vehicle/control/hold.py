@@ -163,6 +163,7 @@ class HoldController:
         motion = self._reader.read(outset.data)
         self.course = _plan_course(hold, motion, outset.level)
         """Where the vehicle should be."""
+        self._switches = _find_switches(hold, outset.model, self.allocation)
         self._force, self._torque = np.zeros(3), np.zeros(3)
         self._time: float | None = None
 
@@ -172,7 +173,10 @@ class HoldController:
         timestep = 0.0 if self._time is None else max(0.0, time - self._time)
         self._time = time
         motion = self._reader.read(data)
+        passed = self.course.passed
         reference = self.course.advance(motion, time, timestep)
+        for addresses, values in self._switches[passed : self.course.passed]:
+            data.ctrl[addresses] = values
 
         # errors of place along the axes of the heading, of attitude along those of the body
         turn = Rotation.from_euler("z", motion.heading).as_matrix()
@@ -203,6 +207,31 @@ class HoldController:
         change = self._held * (gains.integral * error - self._unwinding * missed) * timestep
         self._force = self._force + turn @ change[:3]
         self._torque = self._torque + change[3:]
+
+
+def _find_switches(
+    hold: Hold, model: mujoco.MjModel, allocation: Allocation
+) -> list[tuple[list[int], list[float]]]:
+    """Where the controls that each way-point changes stand in `data.ctrl`, and their values."""
+    names = {
+        str(model.actuator(i).name): i
+        for i in range(model.nu)
+        if str(model.actuator(i).name) not in allocation.names
+    }
+    for waypoint in hold.waypoints:
+        for name in waypoint.controls:
+            if name not in names:
+                raise ControlError(
+                    f"a way-point changes the control of '{name}', which is no actuator beside the "
+                    f"thrusters; {choices(name, names)}"
+                )
+    return [
+        (
+            [int(model.actuator_ctrladr[names[name]]) for name in waypoint.controls],
+            list(waypoint.controls.values()),
+        )
+        for waypoint in hold.waypoints
+    ]
 
 
 def _check_axes(hold: Hold, allocation: Allocation, name: str) -> None:
