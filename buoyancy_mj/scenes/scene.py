@@ -8,6 +8,7 @@ from typing import Any
 import mujoco
 
 from buoyancy_mj.environments.missions import MISSIONS
+from buoyancy_mj.environments.sauvc.layout import read_seed
 from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.scenes.controls import check_controls, controls_from_tables
@@ -59,6 +60,9 @@ class Scene(Settings):
     """Several vehicles instead of the one, each with its own start and masses."""
     environment: str | None = None
     """MJCF file of the surroundings, or the name of an environment that ships."""
+    layout: int | None = None
+    """Seed that draws where the props of such an environment stand, within the rules; the
+    environment is sauvc_qualification or sauvc_course. None for the layout that ships."""
     mission: str | None = None
     """What a referee watches the vehicle do in the environment: sauvc_qualification or
     sauvc_course."""
@@ -142,7 +146,15 @@ class Scene(Settings):
                     )
 
     def _check_mission(self) -> None:
-        """Refuse a mission that nobody knows, or of which it is open who takes part."""
+        """Refuse a mission that nobody knows, or of which it is open who takes part or where."""
+        if self.layout is not None:
+            if self.environment not in MISSIONS:
+                raise SceneError(
+                    f"layout is {describe(self.layout)}, and the environment is "
+                    f"{describe(self.environment)}, of which there is one layout; leave layout "
+                    f"out, or take another environment; {choices(self.environment, MISSIONS)}"
+                )
+            read_seed(self.layout, "layout")
         if self.mission is None:
             return
         if self.mission not in MISSIONS:

@@ -38,9 +38,9 @@ def sauvc_arena(task: str = "course", seed: int | None = None) -> mujoco.MjSpec:
     Args:
         task: 'course' for the final, with start zone, orange flare, three flares with balls, gate,
             drums with pinger, and a ball to drop; 'qualification' for two lanes with a gate each.
-        seed: draws the places of the final's props within the bounds of the rulebook; for the
-            qualification, whose props do not move, it draws the lane. None for its figures, and the
-            lane to port.
+        seed: draws the places of the final's props within the bounds of the rulebook; in the
+            qualification props have their places, and the start is in the lane to port for an even
+            seed, to starboard for an odd one. None for the places of its figures.
 
     Raises:
         SceneError: there is no such task, or the seed is no whole number of 0 or more.

@@ -76,7 +76,7 @@ def draw_layout(seed: int | None = None) -> Layout:
     """
     if seed is None:
         return Layout()
-    draw = random.Random(read_whole_number(SceneError, "seed", seed, 0, 2**63 - 1))
+    draw = random.Random(read_seed(seed))
 
     # what stands on lines
     reach = 0.5 * WIDTH - _FROM_WALL
@@ -97,6 +97,15 @@ def draw_layout(seed: int | None = None) -> Layout:
         blue_drum=blue_drum,
         pinger=pinger,
     )
+
+
+def read_seed(seed: object, name: str = "seed") -> int:
+    """A seed of layouts.
+
+    Raises:
+        SceneError: it is none; the message calls it `name`.
+    """
+    return read_whole_number(SceneError, name, seed, 0, 2**63 - 1)
 
 
 def _draw_flare(
