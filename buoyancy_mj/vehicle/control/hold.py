@@ -5,7 +5,6 @@ from typing import ClassVar
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ControlError, choices, describe
 from buoyancy_mj.values import read_array, set_number
@@ -14,6 +13,7 @@ from buoyancy_mj.vehicle.control.controller import Control, Outset
 from buoyancy_mj.vehicle.control.course import Course, Waypoint
 from buoyancy_mj.vehicle.control.gains import Gains, choose_gains
 from buoyancy_mj.vehicle.control.motion import Motion, Reader, Sensors
+from buoyancy_mj.vehicle.control.rotations import find_rotation_vector, rotate_heading
 
 HELD = {
     "position": ("surge", "sway"),
@@ -155,7 +155,8 @@ class HoldController:
         free = [axis for name in hold.free for axis in HELD[name]]
         self._held = np.array([axis not in free for axis in AXES])
         unreachable = self.allocation.unreachable
-        self._weights = np.array([axis not in unreachable for axis in AXES], float)
+        self._counted = np.array([axis not in unreachable for axis in AXES], float)
+        self._weights = None if self._counted.all() else self._counted
         self._gains: Gains = choose_gains(hold, outset)
         self._unwinding = 0.5 * hold.bandwidth
 
@@ -179,12 +180,12 @@ class HoldController:
             data.ctrl[addresses] = values
 
         # errors of place along the axes of the heading, of attitude along those of the body
-        turn = Rotation.from_euler("z", motion.heading).as_matrix()
-        wanted = Rotation.from_euler("z", reference.heading).as_matrix()
+        turn = rotate_heading(motion.heading)
+        wanted = rotate_heading(reference.heading)
         error = np.concatenate(
             [
                 turn.T @ (reference.position - motion.position),
-                Rotation.from_matrix(motion.rotation.T @ wanted).as_rotvec(),
+                find_rotation_vector(motion.rotation.T @ wanted),
             ]
         )
         upright = motion.rotation.T @ [0.0, 0.0, reference.turning]
@@ -202,7 +203,7 @@ class HoldController:
         self.allocation.write(data, thrusts)
 
         # the integrals, less what the thrusters could not bring
-        missed = wrench - self._weights * (self.allocation.matrix @ thrusts)
+        missed = self._counted * (wrench - self.allocation.matrix @ thrusts)
         missed = np.concatenate([to_body.T @ missed[:3], missed[3:]])
         change = self._held * (gains.integral * error - self._unwinding * missed) * timestep
         self._force = self._force + turn @ change[:3]

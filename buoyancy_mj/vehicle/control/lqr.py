@@ -24,6 +24,12 @@ STIFF = 1e-6
 _AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 _UNSTABLE = 1.0 - 1e-9
 """Size of an eigenvalue from which on a motion does not come to rest by itself."""
+SLOWEST = 1.0 - 1e-6
+"""Greatest size of a pole of the closed loop; one nearer to 1 was not meant to be."""
+_WITHOUT_END = (
+    "no feedback was found: a weight of 0 lets a motion be that does not come to rest by itself; "
+    "give it a weight, or put it into free"
+)
 _LOST = 1e-10
 """Singular value below which a matrix has lost its rank."""
 _WEIGHTS = ("position_weights", "attitude_weights", "velocity_weights", "spin_weights")
@@ -133,17 +139,13 @@ class LqrController:
         # the feedback
         weights = self._list_weights(lqr, count)[self._kept]
         thrust_weights = lqr.thrust_weight * np.eye(b.shape[1])
-        try:
-            cost = solve_discrete_are(a, b, np.diag(weights), thrust_weights)
-        except (np.linalg.LinAlgError, ValueError) as error:
-            raise ControlError(
-                f"no feedback was found ({error}): a weight of 0 lets a motion be that does not "
-                "come to rest by itself; give it a weight, or put it into free"
-            ) from error
+        cost = _solve(a, b, np.diag(weights), thrust_weights)
         self.gain = np.linalg.solve(thrust_weights + b.T @ cost @ b, b.T @ cost @ a)
         """Thrusts per error of the state (m, k) [N], the coordinates that are not free first."""
         self.poles = np.linalg.eigvals(a - b @ self.gain)
         """Eigenvalues of the closed loop (k,), from one update to the next."""
+        if np.abs(self.poles).max() > SLOWEST:
+            raise ControlError(_WITHOUT_END)
         self.allocation = allocate_craft(outset.model, outset.craft, self.motion.qpos)
         """The thrusters."""
 
@@ -230,6 +232,19 @@ def _check_free(lqr: Lqr, motion: LinearMotion, left: list[int]) -> None:
                 f"free holds '{name}', and the motion depends on it ({pull:.2g} per second and "
                 "step): something holds the vehicle there; leave it out of free"
             )
+
+
+def _solve(
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    thrust_weights: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """The cost (k, k) that is left from an error on: the discrete Riccati equation."""
+    try:
+        return np.asarray(solve_discrete_are(a, b, weights, thrust_weights))
+    except (np.linalg.LinAlgError, ValueError) as error:
+        raise ControlError(_WITHOUT_END) from error
 
 
 def _check_reach(

@@ -8,10 +8,10 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ControlError, choices, describe
 from buoyancy_mj.vehicle.control.controller import Outset
+from buoyancy_mj.vehicle.control.rotations import rotate_quaternion
 from buoyancy_mj.vehicle.crafts import Craft
 
 
@@ -44,7 +44,7 @@ class FreeJoint(NamedTuple):
     def read(self, data: mujoco.MjData) -> Motion:
         """The true motion at the time of the data, as a step leaves it."""
         pose, velocity = data.qpos[self.qpos :][:7], data.qvel[self.dof :][:6]
-        rotation = Rotation.from_quat(pose[3:], scalar_first=True).as_matrix()
+        rotation = rotate_quaternion(pose[3:])
         return Motion(pose[:3].copy(), rotation, velocity[:3].copy(), velocity[3:].copy())
 
 
@@ -156,7 +156,7 @@ def _take_attitude(motion: Motion, instrument: _Instrument, value: NDArray[np.fl
     """The rotation, from that of a site."""
     if not value.any():
         return motion
-    site = Rotation.from_quat(value, scalar_first=True).as_matrix()
+    site = rotate_quaternion(value)
     return motion._replace(rotation=site @ instrument.rotation.T)
 
 
@@ -201,7 +201,7 @@ def _find_instrument(outset: Outset, kind: str, name: str) -> _Instrument:
     return _Instrument(
         address=slice(start, start + size),
         position=model.site_pos[site].copy(),
-        rotation=Rotation.from_quat(model.site_quat[site], scalar_first=True).as_matrix(),
+        rotation=rotate_quaternion(model.site_quat[site]),
         in_world=bool(model.sensor_type[sensor] == mujoco.mjtSensor.mjSENS_FRAMELINVEL),
     )
 
