@@ -30,8 +30,8 @@ def posed(model):
 
 def afloat(spec, seconds):
     """The arena after some time in still water."""
-    add_water(spec, Water(), added_mass="ellipsoid")
-    spec.option.timestep = 0.005
+    add_water(spec, Water(), added_mass="model")
+    spec.option.timestep = 0.01
     spec.option.integrator = mujoco.mjtIntegrator.mjINT_IMPLICITFAST
     model = spec.compile()
     data = mujoco.MjData(model)
@@ -191,8 +191,8 @@ def test_the_orange_flare_comes_upright_again_by_its_buoyancy():
 
 def test_a_ball_falls_from_a_flare_that_tilts_and_stays_down():
     spec = sauvc_arena("course")
-    add_water(spec, Water(), added_mass="ellipsoid")
-    spec.option.timestep = 0.005
+    add_water(spec, Water(), added_mass="model")
+    spec.option.timestep = 0.01
     model = spec.compile()
     data = mujoco.MjData(model)
     dofs = model.joint("red_flare").dofadr[0] + np.arange(3)
@@ -217,8 +217,8 @@ def test_the_ball_clings_until_it_is_let_go():
     spec = sauvc_arena("course")
     holder = spec.worldbody.add_body(name="holder", pos=[-11.6, 1.2, -0.6 + 0.02 + 0.051])
     holder.add_geom(type=mujoco.mjtGeom.mjGEOM_BOX, size=[0.1, 0.1, 0.05])
-    add_water(spec, Water(), added_mass="ellipsoid")
-    spec.option.timestep = 0.005
+    add_water(spec, Water(), added_mass="model")
+    spec.option.timestep = 0.01
     model = spec.compile()
     data = mujoco.MjData(model)
     while data.time < 2.0:

@@ -107,6 +107,7 @@ class Scene(Settings):
         object.__setattr__(self, "control", controls)
         check_controls(controls)
         self._check_vehicles()
+        self._check_mission()
         object.__setattr__(self, "vehicles", name_vehicles(self.vehicles))
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(

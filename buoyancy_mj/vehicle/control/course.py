@@ -51,8 +51,8 @@ class Waypoint:
         set_number(self, ControlError, "stay", least=0.0)
         if not isinstance(self.controls, Mapping):
             raise ControlError(
-                f"controls is {describe(self.controls)}; it must be a table of numbers by the names "
-                "of actuators"
+                f"controls is {describe(self.controls)}; it must be a table of numbers by the "
+                "names of actuators"
             )
         controls = {
             name: read_number(ControlError, f"controls.{name}", value)
