@@ -259,6 +259,17 @@ def test_the_reference_goes_straight_at_its_speed_turns_the_short_way_and_waits(
     assert not last.velocity.any()
 
 
+def test_a_hold_begins_anew_where_data_are_reset():
+    model, data = box()
+    update = start_controller(Hold(depth=1.1), model, data)
+    ends = []
+    for _ in range(2):
+        mujoco.mj_resetData(model, data)
+        data.qpos[2] = -1.0
+        ends.append(steer(update, model, data, 2.0))
+    np.testing.assert_array_equal(ends[0], ends[1])
+
+
 def test_a_hold_by_sensors_is_one_by_the_state():
     ends = []
     names = Sensors(attitude="attitude", gyro="gyro", position="place", velocity="log")
@@ -375,7 +386,7 @@ def test_the_derivatives_of_the_engine_have_the_water_and_its_added_mass_in_them
 def test_small_motions_of_a_run_have_the_poles_that_were_computed(vehicle, free):
     control = {"kind": "lqr", "rate": 25.0, "free": free}
     simulation = controlled(control, vehicle=vehicle, added_mass="ellipsoid")
-    update = simulation._steering._helms[0].update
+    update = simulation.controllers[vehicle]
     model, data = simulation.model, simulation.data
 
     # what the state is from one update to the next, over runs from small errors of all kinds
@@ -584,9 +595,17 @@ def test_each_vehicle_of_a_scene_has_a_controller_of_its_own(tmp_path):
 # programs -----------------------------------------------------------------------------------------
 
 CODE = """
+from __future__ import annotations
+import dataclasses
 import math
 
-gain = 8.0
+
+@dataclasses.dataclass
+class Tuning:
+    gain: float = 8.0
+
+
+gain = Tuning().gain
 
 
 def update(model, data):
@@ -793,7 +812,7 @@ def test_the_station_that_ships_is_told_as_json():
 def test_the_start_of_a_hold_is_planned_on_still_water():
     """Waves at the start change neither the gains nor the rest of an lqr."""
     gains = [
-        controlled({"kind": "lqr"}, water=water)._steering._helms[0].update.gain
+        controlled({"kind": "lqr"}, water=water).controllers["bluerov2_heavy"].gain
         for water in ({}, WAVES | {"current": [0.5, 0.0, 0.0]})
     ]
     np.testing.assert_array_equal(gains[0], gains[1])

@@ -31,6 +31,7 @@ from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.steering import Steering
 from buoyancy_mj.scenes.summary import LAST, Summary
 from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
+from buoyancy_mj.vehicle.control.controller import Controller
 
 _STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
@@ -118,6 +119,11 @@ class Simulation(ReadOnly):
     def vehicle(self) -> Vehicle:
         """The only vehicle; an error that names them where there are several."""
         return take_only(self.vehicles)
+
+    @property
+    def controllers(self) -> dict[str, Controller]:
+        """The controllers at work, by the vehicle that each steers; a hold has its `course`."""
+        return {} if self._steering is None else self._steering.controllers
 
     @property
     def hulls(self) -> tuple[Hull, ...]:

@@ -108,6 +108,11 @@ class Steering:
         self._done += 1
 
     @property
+    def controllers(self) -> dict[str, Controller]:
+        """The controllers at work, by the vehicle that each steers."""
+        return {helm.vehicle: helm.update for helm in self._helms}
+
+    @property
     def at_limits(self) -> dict[str, int]:
         """Number of updates in which a control was at a limit, by the vehicle that is steered."""
         return {helm.vehicle: helm.at_limits for helm in self._helms}

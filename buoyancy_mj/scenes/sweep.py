@@ -143,7 +143,9 @@ class Sweep:
         """A short text of all that the runs have in common."""
         scene = read_scene(self.path, self.settings)
         models = [catalog.model_path(entry.model, scene.folder) for entry in scene.entries]
-        files = [path.read_bytes() for path in (self.path, *models)]
+        controls = [path for control in scene.control for path in control.list_files(scene.folder)]
+        read = [path for path in (self.path, *models, *controls) if path.is_file()]
+        files = [path.read_bytes() for path in read]
         common = repr((*files, self.settings, self.keys))
         return f"{self.path.stem} {hashlib.blake2b(common.encode(), digest_size=4).hexdigest()}"
 

@@ -163,7 +163,7 @@ def allocation(
 
     The matrix has a column for each actuator that pushes at a site: motors, generals whose force
     goes with their control, and thrusters of this package. T. I. Fossen, Handbook of Marine Craft
-    Hydrodynamics and Motion Control, 2nd edition (2021), section 11.2.1.
+    Hydrodynamics and Motion Control (2011), section 12.3.
 
     Args:
         model: the model.

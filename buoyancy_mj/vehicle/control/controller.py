@@ -69,6 +69,10 @@ class Control(abc.ABC):
     def title(self) -> str:
         """What messages call it."""
 
+    def list_files(self, folder: Path) -> tuple[Path, ...]:  # noqa: ARG002
+        """The files that it reads when it starts; relative paths start at a folder."""
+        return ()
+
     @abc.abstractmethod
     def start(self, outset: Outset) -> Controller:
         """Start the controller.

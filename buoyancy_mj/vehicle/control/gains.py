@@ -35,8 +35,7 @@ def choose_gains(hold: "Hold", outset: Outset) -> Gains:
     """The gains of a hold: m w^2, m w^3 / 5 and 2 m w for a bandwidth w, where none are given.
 
     A mass m with these has a damping ratio of 1, as a spring and a damper would give it. T. I.
-    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd edition (2021), section
-    15.3 (pole placement of a PID).
+    Fossen, Handbook of Marine Craft Hydrodynamics and Motion Control (2011), section 12.2.
     """
     masses, w = find_apparent_masses(outset), hold.bandwidth
     gains = np.array([masses * w**2, masses * w**3 / SLOWNESS, 2.0 * masses * w])

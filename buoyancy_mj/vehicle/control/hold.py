@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ControlError, choices, describe
 from buoyancy_mj.values import read_array, set_number
@@ -14,6 +15,7 @@ from buoyancy_mj.vehicle.control.course import Course, Waypoint
 from buoyancy_mj.vehicle.control.gains import Gains, choose_gains
 from buoyancy_mj.vehicle.control.motion import Motion, Reader, Sensors
 from buoyancy_mj.vehicle.control.rotations import find_rotation_vector, rotate_heading
+from buoyancy_mj.vehicle.control.switches import find_switches
 
 HELD = {
     "position": ("surge", "sway"),
@@ -38,10 +40,11 @@ class Hold(Control):
         ControlError: a value that makes no sense, or way-points beside a place.
 
     Example:
-        >>> Hold(depth=0.8, heading=0.0, waypoints=())
+        >>> Hold(position=(0.0, 0.0), depth=0.8, heading=0.0)
     """
 
     needs_rest: ClassVar[bool] = True
+    """It asks what the water does at rest when it starts."""
 
     position: tuple[float, float] | None = None
     """Place of the root body's origin (2,) [m], world frame."""
@@ -161,23 +164,26 @@ class HoldController:
         self._unwinding = 0.5 * hold.bandwidth
 
         # where to be
-        motion = self._reader.read(outset.data)
-        self.course = _plan_course(hold, motion, outset.level)
+        self._hold, self._level = hold, outset.level
+        self.course: Course
         """Where the vehicle should be."""
-        self._switches = _find_switches(hold, outset.model, self.allocation)
-        self._force, self._torque = np.zeros(3), np.zeros(3)
-        self._time: float | None = None
+        self._switches = find_switches(hold.waypoints, outset.model, self.allocation.names)
+        self._time: float
+        self._force: NDArray[np.float64]
+        self._torque: NDArray[np.float64]
+        self._begin(self._reader.read(outset.data), float(outset.data.time))
 
     def __call__(self, _: mujoco.MjModel, data: mujoco.MjData) -> None:
         """Write the controls of the thrusters."""
-        time = float(data.time)
-        timestep = 0.0 if self._time is None else max(0.0, time - self._time)
-        self._time = time
-        motion = self._reader.read(data)
+        time, motion = float(data.time), self._reader.read(data)
+        if time < self._time:
+            # the data were reset
+            self._begin(motion, time)
+        timestep, self._time = time - self._time, time
         passed = self.course.passed
         reference = self.course.advance(motion, time, timestep)
-        for addresses, values in self._switches[passed : self.course.passed]:
-            data.ctrl[addresses] = values
+        for switch in self._switches[passed : self.course.passed]:
+            data.ctrl[switch.addresses] = switch.levels
 
         # errors of place along the axes of the heading, of attitude along those of the body
         turn = rotate_heading(motion.heading)
@@ -209,30 +215,11 @@ class HoldController:
         self._force = self._force + turn @ change[:3]
         self._torque = self._torque + change[3:]
 
-
-def _find_switches(
-    hold: Hold, model: mujoco.MjModel, allocation: Allocation
-) -> list[tuple[list[int], list[float]]]:
-    """Where the controls that each way-point changes stand in `data.ctrl`, and their values."""
-    names = {
-        str(model.actuator(i).name): i
-        for i in range(model.nu)
-        if str(model.actuator(i).name) not in allocation.names
-    }
-    for waypoint in hold.waypoints:
-        for name in waypoint.controls:
-            if name not in names:
-                raise ControlError(
-                    f"a way-point changes the control of '{name}', which is no actuator beside the "
-                    f"thrusters; {choices(name, names)}"
-                )
-    return [
-        (
-            [int(model.actuator_ctrladr[names[name]]) for name in waypoint.controls],
-            list(waypoint.controls.values()),
-        )
-        for waypoint in hold.waypoints
-    ]
+    def _begin(self, motion: Motion, time: float) -> None:
+        """Plan the course from where the vehicle is at a time [s], with nothing learnt."""
+        self.course = _plan_course(self._hold, motion, self._level)
+        self._force, self._torque = np.zeros(3), np.zeros(3)
+        self._time = time
 
 
 def _check_axes(hold: Hold, allocation: Allocation, name: str) -> None:

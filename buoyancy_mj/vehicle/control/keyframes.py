@@ -62,9 +62,13 @@ class Keyframes(Control):
         """What messages call it."""
         return f"keyframes of '{self.file}'"
 
+    def list_files(self, folder: Path) -> tuple[Path, ...]:
+        """The table."""
+        return (folder / Path(self.file).expanduser(),)
+
     def start(self, outset: Outset) -> "KeyframesController":
         """Read the schedule."""
-        path = outset.folder / Path(self.file).expanduser()
+        (path,) = self.list_files(outset.folder)
         return KeyframesController(read_schedule(path), self.between, outset, path)
 
 

@@ -44,13 +44,14 @@ class Lqr(Control):
     choice (Bryson's rule). The motion is linearised about the rest by MuJoCo's own derivatives,
     with water and added mass. The feedback knows no integral: what pushes steadily beside the
     weight and the buoyancy leaves an error. A. E. Bryson and Y.-C. Ho, Applied Optimal Control
-    (1975), section 5.
+    (1975), chapter 5.
 
     Raises:
         ControlError: a value that makes no sense.
     """
 
     needs_rest: ClassVar[bool] = True
+    """It asks what the water does at rest when it starts."""
 
     position: tuple[float, float] | None = None
     """Place of rest of the root body's origin (2,) [m], world frame; None for that of the start."""

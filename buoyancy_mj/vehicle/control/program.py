@@ -1,6 +1,7 @@
 """`Program`: a controller of the user's own, from a Python file."""
 
 import dataclasses
+import sys
 import types
 from pathlib import Path
 from typing import Any
@@ -39,10 +40,15 @@ class Program(Control):
         """What messages call it."""
         return f"'{self.file}'"
 
+    def list_files(self, folder: Path) -> tuple[Path, ...]:
+        """The Python file."""
+        name, _, _ = self.file.rpartition(":")
+        return (folder / Path(name).expanduser(),)
+
     def start(self, outset: Outset) -> Controller:
         """Run the file, and take the function."""
-        name, _, function = self.file.rpartition(":")
-        path = outset.folder / Path(name).expanduser()
+        _, _, function = self.file.rpartition(":")
+        (path,) = self.list_files(outset.folder)
         if not path.is_file():
             raise ControlError(f"there is no controller '{path}'; a path starts at the scene")
         module = _run_file(path)
@@ -58,8 +64,10 @@ class Program(Control):
 
 def _run_file(path: Path) -> dict[str, Any]:
     """Run a Python file as a module of its own; its names."""
-    module = types.ModuleType(f"_controller_{path.stem}")
+    module = types.ModuleType(f"controller {path.stem}")
     module.__file__ = str(path)
+    # dataclasses look their module up
+    sys.modules[module.__name__] = module
     try:
         exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
     except Exception as error:
