@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import mujoco
 
 from buoyancy_mj.environments.sauvc.drums import add_ball, add_drums
-from buoyancy_mj.environments.sauvc.flares import add_flare, add_orange_flare
+from buoyancy_mj.environments.sauvc.flares import RIMS, add_flare, add_orange_flare
 from buoyancy_mj.environments.sauvc.gates import add_gate, add_qualification_gate
 from buoyancy_mj.environments.sauvc.layout import (
     GATE_X,
@@ -16,6 +16,7 @@ from buoyancy_mj.environments.sauvc.layout import (
 )
 from buoyancy_mj.environments.sauvc.pool import LENGTH, add_pool, add_start_zone
 from buoyancy_mj.errors import SceneError, choices, describe
+from buoyancy_mj.hulls.selection import CUSTOM_TEXTS
 
 ORDER_TEXT = "sauvc_flare_order"
 """`<custom><text>` that holds the colours of the flares in the order in which to bump them."""
@@ -69,6 +70,7 @@ def _add_course(spec: mujoco.MjSpec, layout: Layout, _: int | None) -> None:
     add_gate(spec, (GATE_X, layout.gate))
     add_drums(spec, layout)
     add_ball(spec, (*layout.start, _BALL_HEIGHT))
+    spec.add_text(name=CUSTOM_TEXTS["geoms"], data=RIMS)
     spec.add_text(name=ORDER_TEXT, data=" ".join(layout.order))
 
 

@@ -18,6 +18,9 @@ BALL_MASS = 0.0459
 ORANGE_RADIUS = 0.075
 """Radius of the orange flare [m]."""
 
+RIMS = "!*_flare_rim_*"
+"""Word for `<custom><text name="buoyancy_geoms">` that keeps the rims out of the water."""
+
 _COLOURS = {
     "red": (0.8, 0.0, 0.0, 1.0),
     "yellow": (0.95, 0.77, 0.2, 1.0),
@@ -136,7 +139,7 @@ def add_orange_flare(spec: mujoco.MjSpec, place: tuple[float, float]) -> None:
 def _add_rim(rod: mujoco.MjsBody, name: str) -> None:
     """Add the beads around the end of a rod: without friction, a well from which a ball can roll.
 
-    They weigh and displace next to nothing.
+    They weigh nothing, and displace nothing, see `RIMS`.
     """
     for number in range(_RIM):
         angle = 2.0 * math.pi * (number + 0.5) / _RIM
