@@ -88,6 +88,12 @@ from buoyancy_mj.vehicle.control.keyframes import Keyframes as Keyframes
 from buoyancy_mj.vehicle.control.lqr import Lqr as Lqr
 from buoyancy_mj.vehicle.control.motion import Sensors as Sensors
 from buoyancy_mj.vehicle.control.program import Program as Program
+from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
+from buoyancy_mj.vehicle.thruster import Thruster as Thruster
+from buoyancy_mj.vehicle.thrusters import ThrusterReading as ThrusterReading
+from buoyancy_mj.vehicle.thrusters import add_thruster as add_thruster
+from buoyancy_mj.vehicle.thrusters import find_thruster as find_thruster
+from buoyancy_mj.vehicle.thrusters import read_thrusters as read_thrusters
 
 __version__ = _version("buoyancy_mj")
 

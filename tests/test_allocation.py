@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import ModelError, allocation
+from buoyancy_mj import ModelError, Thruster, add_thruster, allocation, find_thruster
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.vehicle.drives import find_drives
 
@@ -54,8 +54,14 @@ def test_the_engine_accelerates_a_vehicle_as_the_matrix_says(name):
     found = allocation(model, data)
     inertia = Rotation.from_quat(model.body_iquat[1], scalar_first=True).as_matrix()
     inertia = inertia @ np.diag(model.body_inertia[1]) @ inertia.T
+    mujoco.mj_forward(model, data)
+    moments = np.zeros((model.nu, model.nv))
+    mujoco.mju_sparse2dense(
+        moments, data.actuator_moment, data.moment_rownnz, data.moment_rowadr, data.moment_colind
+    )
     for i in range(model.nu):
-        data.ctrl[:] = np.eye(model.nu)[i]
+        # a newton of thrust, whatever control and time bring it
+        data.qfrc_applied[:] = moments[i]
         mujoco.mj_forward(model, data)
         world_from_body = data.xmat[1].reshape(3, 3)
         turning = data.qacc[3:]
@@ -90,12 +96,31 @@ def test_thrusters_on_an_arm_push_the_whole_vehicle_where_the_arm_stands():
 def test_reach_is_the_most_along_each_axis_alone():
     found = allocation(ship("bluerov2_heavy"))
     push = 4 * np.sqrt(0.5)
-    np.testing.assert_allclose(found.reach[0], [-40 * push, 51 * push], rtol=1e-9)
+    least, most = found.least[0], found.most[0]
+    assert -45.0 < least < -35.0
+    assert 45.0 < most < 55.0
+    np.testing.assert_allclose(found.reach[0], [least * push, most * push], rtol=1e-6)
     # sideways two push and two pull, so that the weaker direction counts
-    np.testing.assert_allclose(found.reach[1], [-40 * push, 40 * push], rtol=1e-9)
-    np.testing.assert_allclose(found.reach[2], [-160.0, 204.0], rtol=1e-9)
+    np.testing.assert_allclose(found.reach[1], [least * push, -least * push], rtol=1e-6)
+    np.testing.assert_allclose(found.reach[2], [4.0 * least, 4.0 * most], rtol=1e-6)
     assert found.rank == 6
     assert found.unreachable == ()
+
+
+def test_thrusters_are_drives_by_their_bollard_curves():
+    spec = mujoco.MjSpec.from_string(PAIR.format(actuators="", more=""))
+    for site, control in (("port", "throttle"), ("starboard", "thrust")):
+        add_thruster(spec, site, Thruster(preset="t200", voltage=16.0, control=control))
+    model = spec.compile()
+    found = allocation(model)
+    thruster = find_thruster(model, "port")
+    assert (found.least[0], found.most[0]) == thruster.limits()
+    throttle, thrust = found.commands([20.0, -10.0])
+    assert thrust == pytest.approx(-10.0)
+    assert thruster.thrust(throttle) == pytest.approx(20.0, rel=1e-6)
+    # the propeller turns one way, and the vehicle the other
+    assert found.matrix[3, 0] < 0.0
+    assert found.matrix[5, 0] == pytest.approx(-0.5)
 
 
 def test_axes_that_cannot_be_had_alone_are_named():
@@ -174,7 +199,8 @@ def test_actuators_that_push_nothing_alone_are_no_drives():
         (
             '<general name="port" site="port" gear="0 0 1 0 0 0" dyntype="integrator"/>',
             "the thrust of actuator 'port' does not follow from its control: its dyntype is not "
-            "that of a motor; give it <motor>, or put it into a group that is disabled",
+            "that of a motor or of a thruster; give it one of these, or put it into a group that "
+            "is disabled",
         ),
         ("", "no actuator pushes 'rov' at a site; give it motors or thrusters at sites"),
     ],

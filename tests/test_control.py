@@ -389,6 +389,8 @@ def test_small_motions_of_a_run_have_the_poles_that_were_computed(vehicle, free)
     update = simulation.controllers[vehicle]
     model, data = simulation.model, simulation.data
 
+    assert len(update.poles) == (9 if free else 12) + (model.nu if model.na else 0)
+
     # what the state is from one update to the next, over runs from small errors of all kinds
     before, after = [], []
     rng = np.random.default_rng(3)
@@ -397,6 +399,10 @@ def test_small_motions_of_a_run_have_the_poles_that_were_computed(vehicle, free)
         data.qpos[:] = update.motion.qpos
         mujoco.mj_integratePos(model, data.qpos, 1e-4 * rng.normal(size=6), 1)
         data.qvel[:] = 1e-4 * rng.normal(size=6)
+        if model.na:
+            # the first state of each thruster follows its control
+            thrusts = update.motion.thrusts + 1e-3 * rng.normal(size=model.nu)
+            data.act[model.actuator_actadr] = thrusts
         for _ in range(30):
             before.append(update.measure(model, data))
             for _ in range(4):
@@ -404,10 +410,11 @@ def test_small_motions_of_a_run_have_the_poles_that_were_computed(vehicle, free)
             after.append(update.measure(model, data))
     found = np.linalg.lstsq(np.array(before), np.array(after), rcond=None)[0]
     poles = np.linalg.eigvals(found)
-    assert len(poles) == (9 if free else 12)
+    assert len(poles) == len(update.poles)
     assert np.abs(update.poles).max() < 0.99
     for pole in update.poles:
-        assert np.abs(poles - pole).min() < 1e-3
+        # the torque of small propellers is not quite in proportion to their thrust
+        assert np.abs(poles - pole).min() < (3e-3 if model.na else 1e-3)
 
 
 def test_a_vehicle_whose_place_and_heading_are_free_comes_to_rest_wherever_it_looks():
@@ -753,10 +760,11 @@ def test_the_summary_counts_updates_at_limits():
     far = {"kind": "hold", "position": [50.0, 0.0], "speed": 100.0, "bandwidth": 10.0}
     simulation = controlled(far)
     count = 0
+    least, most = simulation.model.actuator_ctrlrange.T
     for step in range(20):
         simulation.step()
         ctrl = simulation.data.ctrl
-        count += step % 2 == 0 and bool(((ctrl <= -40.0) | (ctrl >= 51.0)).any())
+        count += step % 2 == 0 and bool(((ctrl < least + 1e-6) | (ctrl > most - 1e-6)).any())
     summary = simulation.summary()
     assert 0 < summary.updates_at_limits == count
     assert ("controls at their limits", f"{count} updates") in summary.rows()

@@ -1,6 +1,7 @@
-"""What a vehicle does by itself: it pushes, senses and steers.
+"""What a vehicle acts and senses with: thrusters, tanks, sensors, and what drives them.
 
-In: a model with its water, and what a vehicle carries: thrusters, tanks, sensors, controllers.
-Out: plain MJCF for the engine, readings, and controls in `data.ctrl`.
-May import: engine, settings, statics, loads, hulls, sea, kernels, values, records, errors.
+In: MJCF, an MjSpec or a model; then the engine's arrays, pass by pass.
+Out: actuators and sensors that work wherever MuJoCo steps, and controls in `data.ctrl`.
+May import: engine, inspection, settings, statics, loads, sea, hulls, kernels, values,
+errors, records.
 """

@@ -13,7 +13,7 @@ from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.values import read_array
 from buoyancy_mj.vehicle.crafts import Craft, find_centre, find_craft
-from buoyancy_mj.vehicle.drives import Drive
+from buoyancy_mj.vehicle.drives import Curve, Drive
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 """Axes of a wrench in the frame of a vehicle: forces along x, y, z, then torques about them."""
@@ -126,14 +126,29 @@ class Allocation:
         return np.asarray(np.clip(found.x, self.least, self.most))
 
     def commands(self, thrusts: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
-        """The controls (n,) that bring steady thrusts (n,) [N] in water at rest."""
-        return np.array(
-            [drive.command(float(t)) for drive, t in zip(self.drives, thrusts, strict=True)]
-        )
+        """Controls (n,) that bring steady thrusts (n,) [N] in still water, within the limits."""
+        wanted = np.clip(thrusts, self.least, self.most)
+        commands = np.empty(len(self.drives))
+        for curve, alike in self._alike.items():
+            commands[alike] = curve.command(wanted[alike])
+        return commands
 
     def write(self, data: mujoco.MjData, thrusts: Sequence[float] | NDArray[np.float64]) -> None:
         """Write the controls that bring thrusts (n,) [N] into `data.ctrl`."""
-        data.ctrl[[drive.control for drive in self.drives]] = self.commands(thrusts)
+        data.ctrl[self._controls] = self.commands(thrusts)
+
+    @functools.cached_property
+    def _controls(self) -> list[int]:
+        """Where the controls stand in `data.ctrl`."""
+        return [drive.control for drive in self.drives]
+
+    @functools.cached_property
+    def _alike(self) -> dict[Curve, list[int]]:
+        """The drives of each curve."""
+        groups: dict[Curve, list[int]] = {}
+        for i, drive in enumerate(self.drives):
+            groups.setdefault(drive.curve, []).append(i)
+        return groups
 
     @property
     def _scale(self) -> float:

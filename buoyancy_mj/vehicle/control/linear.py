@@ -38,8 +38,8 @@ def linearise(outset: Outset) -> LinearMotion:
     """Linearise the motion of a vehicle about rest where its data put it.
 
     A is that of MuJoCo's `mjd_transitionFD`, in whose steps the water acts with its added mass. B
-    goes by thrust, and not by control: the commands of drives with a dead band have no slope at 0.
-    What rotors add as states of their own is left out.
+    goes by thrust, and not by control: thrusters by throttle have no slope at 0. What rotors add
+    as states of their own is left out.
 
     Args:
         outset: the vehicle; its data say where, and are changed.

@@ -7,7 +7,6 @@ from typing import ClassVar
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_are
 from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ControlError, choices, describe
@@ -16,22 +15,18 @@ from buoyancy_mj.vehicle.allocation import allocate_craft
 from buoyancy_mj.vehicle.control.controller import Control, Outset, count_steps
 from buoyancy_mj.vehicle.control.linear import LinearMotion, linearise
 from buoyancy_mj.vehicle.control.motion import FreeJoint, find_free_joint
+from buoyancy_mj.vehicle.control.regulator import (
+    add_lags,
+    find_unreached,
+    hold_inputs,
+    solve_regulator,
+)
 
 FREE = {"position": (0, 1), "depth": (2,), "heading": (5,)}
 """What may be left free, and the degrees of freedom of a free joint that go with it."""
 STIFF = 1e-6
 """Change of velocity in a step per metre or radian [1/s] below which nothing holds a coordinate."""
 _AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-_UNSTABLE = 1.0 - 1e-9
-"""Size of an eigenvalue from which on a motion does not come to rest by itself."""
-SLOWEST = 1.0 - 1e-6
-"""Greatest size of a pole of the closed loop; one nearer to 1 was not meant to be."""
-_WITHOUT_END = (
-    "no feedback was found: a weight of 0 lets a motion be that does not come to rest by itself; "
-    "give it a weight, or put it into free"
-)
-_LOST = 1e-10
-"""Singular value below which a matrix has lost its rank."""
 _WEIGHTS = ("position_weights", "attitude_weights", "velocity_weights", "spin_weights")
 
 
@@ -42,9 +37,9 @@ class Lqr(Control):
     The cost is the sum over all updates of the squares of errors and of thrusts, each by its
     weight. A weight of one over the square of the largest error that is acceptable is a good first
     choice (Bryson's rule). The motion is linearised about the rest by MuJoCo's own derivatives,
-    with water and added mass. The feedback knows no integral: what pushes steadily beside the
-    weight and the buoyancy leaves an error. A. E. Bryson and Y.-C. Ho, Applied Optimal Control
-    (1975), chapter 5.
+    with water and added mass; the lag of thrusters is in it too. The feedback knows no integral:
+    what pushes steadily beside the weight and the buoyancy leaves an error. A. E. Bryson and Y.-C.
+    Ho, Applied Optimal Control (1975), chapter 5.
 
     Raises:
         ControlError: a value that makes no sense.
@@ -131,22 +126,25 @@ class LqrController:
         self._kept = np.array([i for i in range(2 * count) if i not in left])
         _check_free(lqr, self.motion, left)
 
-        # the motion from one update to the next
+        # the motion from one update to the next, with what rotors lag behind
         self.steps = count_steps(lqr, float(outset.model.opt.timestep))
         """Number of steps from one update to the next."""
-        a, b = self._hold_controls()
-        _check_reach(a, b, self._kept, count, outset)
+        kept = self._kept
+        a, b = self.motion.a[np.ix_(kept, kept)], self.motion.b[kept]
+        drives, timestep = outset.craft.drives, float(outset.model.opt.timestep)
+        lags = np.array([drive.lag.keep(timestep) if drive.lag else 0.0 for drive in drives])
+        a, b = hold_inputs(*add_lags(a, b, lags), self.steps)
+        self._lagging = np.flatnonzero(lags)
+        _check_reach(a, b, kept, count, outset)
 
         # the feedback
-        weights = self._list_weights(lqr, count)[self._kept]
-        thrust_weights = lqr.thrust_weight * np.eye(b.shape[1])
-        cost = _solve(a, b, np.diag(weights), thrust_weights)
-        self.gain = np.linalg.solve(thrust_weights + b.T @ cost @ b, b.T @ cost @ a)
-        """Thrusts per error of the state (m, k) [N], the coordinates that are not free first."""
-        self.poles = np.linalg.eigvals(a - b @ self.gain)
+        weights = np.zeros(len(a))
+        weights[: len(kept)] = self._list_weights(lqr, count)[kept]
+        found = solve_regulator(a, b, weights, np.full(len(drives), lqr.thrust_weight))
+        self.gain = found.gain
+        """Thrusts per error of the state (m, k) [N], see `measure`."""
+        self.poles = found.poles
         """Eigenvalues of the closed loop (k,), from one update to the next."""
-        if np.abs(self.poles).max() > SLOWEST:
-            raise ControlError(_WITHOUT_END)
         self.allocation = allocate_craft(outset.model, outset.craft, self.motion.qpos)
         """The thrusters."""
 
@@ -156,7 +154,7 @@ class LqrController:
         self.allocation.write(data, thrusts)
 
     def measure(self, model: mujoco.MjModel, data: mujoco.MjData) -> NDArray[np.float64]:
-        """Error of the state (k,), without the coordinates that are free.
+        """Error of the state (k,): coordinates that are not free, velocities, thrusts that lag.
 
         A vehicle that has turned, where its heading is free, is seen as if it had not: still water
         is the same in all directions.
@@ -177,7 +175,9 @@ class LqrController:
         mujoco.mj_differentiatePos(model, error, 1.0, self.motion.qpos, qpos)
         dofs = self.motion.dofs
         whole = np.concatenate([error[dofs], qvel[dofs]])
-        return np.asarray(whole[self._kept])
+        drives, balance = self.allocation.drives, self.motion.thrusts
+        thrusts = [drives[i].follow(data) - balance[i] for i in self._lagging]
+        return np.concatenate([whole[self._kept], thrusts])
 
     def _heading_of(self, rest: NDArray[np.float64], now: NDArray[np.float64]) -> float:
         """The turn about the vertical [rad] from the heading now to that of the rest."""
@@ -186,15 +186,6 @@ class LqrController:
             w, x, y, z = qpos[self._joint.qpos + 3 :][:4]
             headings.append(math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
         return headings[0] - headings[1]
-
-    def _hold_controls(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """The matrices of several steps with the same thrusts, without what is free."""
-        kept = self._kept
-        a, b = self.motion.a[np.ix_(kept, kept)], self.motion.b[kept]
-        several, pushed = np.eye(len(kept)), np.zeros_like(b)
-        for _ in range(self.steps):
-            several, pushed = a @ several, a @ pushed + b
-        return several, pushed
 
     def _list_weights(self, lqr: Lqr, count: int) -> NDArray[np.float64]:
         """Weights of the whole state (2n,); joints beside the free one have none."""
@@ -235,19 +226,6 @@ def _check_free(lqr: Lqr, motion: LinearMotion, left: list[int]) -> None:
             )
 
 
-def _solve(
-    a: NDArray[np.float64],
-    b: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    thrust_weights: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """The cost (k, k) that is left from an error on: the discrete Riccati equation."""
-    try:
-        return np.asarray(solve_discrete_are(a, b, weights, thrust_weights))
-    except (np.linalg.LinAlgError, ValueError) as error:
-        raise ControlError(_WITHOUT_END) from error
-
-
 def _check_reach(
     a: NDArray[np.float64],
     b: NDArray[np.float64],
@@ -255,18 +233,13 @@ def _check_reach(
     count: int,
     outset: Outset,
 ) -> None:
-    """Refuse motions that do not come to rest by themselves and that thrusters do not reach.
-
-    M. L. J. Hautus, Controllability and observability conditions (1969).
-    """
-    for value in np.linalg.eigvals(a):
-        if abs(value) < _UNSTABLE:
-            continue
-        lefts, sizes, _ = np.linalg.svd(np.hstack([a - value * np.eye(len(a)), b]))
-        if sizes[-1] < _LOST:
-            first = int(kept[int(np.argmax(np.abs(lefts[:, -1])))]) % count
-            axis = _AXES[first] if first < 6 else f"joint {first - 5}"
-            raise ControlError(
-                f"the thrusters of '{outset.craft.name}' do not reach its {axis}, which does not "
-                "come to rest by itself; leave it free where that is possible, or add a thruster"
-            )
+    """Refuse motions that do not come to rest by themselves and that thrusters do not reach."""
+    lost = find_unreached(a, b)
+    if lost is None:
+        return
+    first = int(kept[lost]) % count
+    axis = _AXES[first] if first < 6 else f"joint {first - 5}"
+    raise ControlError(
+        f"the thrusters of '{outset.craft.name}' do not reach its {axis}, which does not come to "
+        "rest by itself; leave it free where that is possible, or add a thruster"
+    )
