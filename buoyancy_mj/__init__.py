@@ -77,6 +77,7 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
 from buoyancy_mj.vehicle.allocation import Allocation as Allocation
 from buoyancy_mj.vehicle.allocation import allocation as allocation
 from buoyancy_mj.vehicle.control.controller import Control as Control
@@ -86,9 +87,8 @@ from buoyancy_mj.vehicle.control.course import Waypoint as Waypoint
 from buoyancy_mj.vehicle.control.hold import Hold as Hold
 from buoyancy_mj.vehicle.control.keyframes import Keyframes as Keyframes
 from buoyancy_mj.vehicle.control.lqr import Lqr as Lqr
-from buoyancy_mj.vehicle.control.motion import Sensors as Sensors
+from buoyancy_mj.vehicle.control.motion import ControlSensors as ControlSensors
 from buoyancy_mj.vehicle.control.program import Program as Program
-from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
 from buoyancy_mj.vehicle.thruster import Thruster as Thruster
 from buoyancy_mj.vehicle.thrusters import ThrusterReading as ThrusterReading
 from buoyancy_mj.vehicle.thrusters import add_thruster as add_thruster

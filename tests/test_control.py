@@ -14,13 +14,13 @@ from typer.testing import CliRunner
 
 from buoyancy_mj import (
     ControlError,
+    ControlSensors,
     Hold,
     Keyframes,
     Lqr,
     Program,
     RegularWave,
     SceneError,
-    Sensors,
     Simulation,
     Water,
     Waypoint,
@@ -272,8 +272,8 @@ def test_a_hold_begins_anew_where_data_are_reset():
 
 def test_a_hold_by_sensors_is_one_by_the_state():
     ends = []
-    names = Sensors(attitude="attitude", gyro="gyro", position="place", velocity="log")
-    world = Sensors(attitude="attitude", gyro="gyro", depth="place", velocity="way")
+    names = ControlSensors(attitude="attitude", gyro="gyro", position="place", velocity="log")
+    world = ControlSensors(attitude="attitude", gyro="gyro", depth="place", velocity="way")
     for sensors in (None, names, world):
         model, data = box()
         data.qpos[3:7] = Rotation.from_euler("ZYX", [0.3, 0.1, 0.1]).as_quat(scalar_first=True)
@@ -290,7 +290,7 @@ def test_a_hold_by_sensors_is_one_by_the_state():
 def test_an_echo_that_is_lost_leaves_the_last_one():
     model, data = box()
     mujoco.mj_forward(model, data)
-    update = start_controller(Hold(sensors=Sensors(depth="place")), model, data)
+    update = start_controller(Hold(sensors=ControlSensors(depth="place")), model, data)
     update(model, data)
     known = update._reader.read(data).position[2]
     data.sensordata[:] = np.nan
@@ -301,7 +301,12 @@ def test_an_echo_that_is_lost_leaves_the_last_one():
     ("sensors", "message"),
     [
         ({"gyro": "gyros"}, "there is no sensor 'gyros'; did you mean 'gyro'?"),
-        ({"gyro": "attitude"}, "sensor 'attitude' gives 4 numbers; needed for the gyro are 3"),
+        ({"gyro": "attitude"}, "sensor 'attitude' is framequat; needed for the gyro is gyro"),
+        (
+            {"velocity": "shake"},
+            "sensor 'shake' is accelerometer; needed for the velocity is velocimeter or "
+            "buoyancy_mj.dvl or framelinvel",
+        ),
         (
             {"depth": "hull"},
             "sensor 'hull' is at no site of body 'rov'; put it at one, so that the controller "
@@ -311,7 +316,7 @@ def test_an_echo_that_is_lost_leaves_the_last_one():
 )
 def test_a_sensor_that_does_not_fit_is_refused(sensors, message):
     with pytest.raises(ControlError, match=re.escape(message)):
-        start_controller(Hold(sensors=Sensors(**sensors)), *box())
+        start_controller(Hold(sensors=ControlSensors(**sensors)), *box())
 
 
 def test_what_the_thrusters_cannot_hold_must_be_free():

@@ -11,7 +11,7 @@ from buoyancy_mj.vehicle.control.course import Waypoint
 from buoyancy_mj.vehicle.control.hold import Hold
 from buoyancy_mj.vehicle.control.keyframes import Keyframes
 from buoyancy_mj.vehicle.control.lqr import Lqr
-from buoyancy_mj.vehicle.control.motion import Sensors
+from buoyancy_mj.vehicle.control.motion import ControlSensors
 from buoyancy_mj.vehicle.control.program import Program
 
 CONTROLS: Mapping[str, type[Control]] = {
@@ -85,7 +85,7 @@ def _read_inner_tables(table: dict[str, Any], where: str) -> dict[str, Any]:
     fields: dict[str, Any] = {}
     if "sensors" in table:
         place = f"{where}.sensors"
-        fields["sensors"] = build(Sensors, table_of(table.pop("sensors"), place), place)
+        fields["sensors"] = build(ControlSensors, table_of(table.pop("sensors"), place), place)
     if "waypoints" in table:
         waypoints = table.pop("waypoints")
         place = f"{where}.waypoints"

@@ -13,7 +13,7 @@ from buoyancy_mj.vehicle.allocation import AXES, Allocation, allocate_craft
 from buoyancy_mj.vehicle.control.controller import Control, Outset
 from buoyancy_mj.vehicle.control.course import Course, Waypoint
 from buoyancy_mj.vehicle.control.gains import Gains, choose_gains
-from buoyancy_mj.vehicle.control.motion import Motion, Reader, Sensors
+from buoyancy_mj.vehicle.control.motion import ControlSensors, Motion, Reader
 from buoyancy_mj.vehicle.control.rotations import find_rotation_vector, rotate_heading
 from buoyancy_mj.vehicle.control.switches import find_switches
 
@@ -72,7 +72,7 @@ class Hold(Control):
     """Gains of pitch (3,) [N m/rad, N m/(rad s), N m s/rad]."""
     heading_gains: tuple[float, float, float] | None = None
     """Gains of yaw (3,) [N m/rad, N m/(rad s), N m s/rad]."""
-    sensors: Sensors | None = None
+    sensors: ControlSensors | None = None
     """Sensors to read in the place of the true state."""
 
     def __post_init__(self) -> None:

@@ -2,13 +2,14 @@
 
 import dataclasses
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import NamedTuple
 
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.engine.devices import kind_of
 from buoyancy_mj.errors import ControlError, choices, describe
 from buoyancy_mj.vehicle.control.controller import Outset
 from buoyancy_mj.vehicle.control.rotations import rotate_quaternion
@@ -64,7 +65,7 @@ def find_free_joint(model: mujoco.MjModel, craft: Craft) -> FreeJoint:
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class Sensors:
+class ControlSensors:
     """Names of the sensors that a controller reads in the place of the true state.
 
     They stand at sites of the vehicle's root body, and are read one step old, as the engine leaves
@@ -78,13 +79,22 @@ class Sensors:
     position: str | None = None
     """A framepos."""
     depth: str | None = None
-    """A depth [m] below the still surface, of one number; or a framepos, whose z is read."""
+    """A depth gauge (buoyancy_mj.depth), which best goes by the still surface; or a framepos, whose
+    z is read."""
     velocity: str | None = None
-    """A velocimeter or a velocity log, in the frame of its site; or a framelinvel."""
+    """A velocimeter, a velocity log (buoyancy_mj.dvl) or a framelinvel."""
 
 
-SIZES = {"attitude": (4,), "gyro": (3,), "position": (3,), "depth": (1, 3), "velocity": (3,)}
-"""How many numbers each kind of sensor may have."""
+KINDS = {
+    "attitude": ("framequat",),
+    "gyro": ("gyro",),
+    "position": ("framepos",),
+    "depth": ("buoyancy_mj.depth", "framepos"),
+    "velocity": ("velocimeter", "buoyancy_mj.dvl", "framelinvel"),
+}
+"""Kinds of sensors that may be read: MuJoCo's by their name in MJCF, and plugins."""
+_SIZES = {"framequat": 4, "buoyancy_mj.depth": 1}
+"""How many numbers are read of a sensor, where it is not three."""
 
 
 class Reader:
@@ -99,7 +109,7 @@ class Reader:
             elsewhere than on the root body.
     """
 
-    def __init__(self, outset: Outset, sensors: Sensors | None = None) -> None:
+    def __init__(self, outset: Outset, sensors: ControlSensors | None = None) -> None:
         self._joint = find_free_joint(outset.model, outset.craft)
         self._level = outset.level
         self._instruments: list[tuple[Callable[..., Motion], _Instrument]] = []
@@ -185,10 +195,11 @@ def _find_instrument(outset: Outset, kind: str, name: str) -> _Instrument:
     if name not in own:
         raise ControlError(f"there is no sensor {describe(name)}; {choices(name, own)}")
     sensor = own[name]
-    size, sizes = int(model.sensor_dim[sensor]), SIZES[kind]
-    if size not in sizes:
+    got, kinds = _kind_of_sensor(model, sensor), KINDS[kind]
+    if got not in kinds or model.sensor_refid[sensor] >= 0:
+        against = "" if got not in kinds else " against another frame"
         raise ControlError(
-            f"sensor '{name}' gives {size} numbers; needed for the {kind} are {_either(sizes)}"
+            f"sensor '{name}' is {got}{against}; needed for the {kind} is {' or '.join(kinds)}"
         )
     site = int(model.sensor_objid[sensor])
     is_site = model.sensor_objtype[sensor] == mujoco.mjtObj.mjOBJ_SITE
@@ -199,13 +210,18 @@ def _find_instrument(outset: Outset, kind: str, name: str) -> _Instrument:
         )
     start = int(model.sensor_adr[sensor])
     return _Instrument(
-        address=slice(start, start + size),
+        address=slice(start, start + _SIZES.get(got, 3)),
         position=model.site_pos[site].copy(),
         rotation=rotate_quaternion(model.site_quat[site]),
-        in_world=bool(model.sensor_type[sensor] == mujoco.mjtSensor.mjSENS_FRAMELINVEL),
+        in_world=got == "framelinvel",
     )
 
 
-def _either(sizes: Sequence[int]) -> str:
-    """Numbers in words."""
-    return " or ".join(map(str, sizes))
+def _kind_of_sensor(model: mujoco.MjModel, sensor: int) -> str:
+    """The kind of a sensor: its name in MJCF, or that of its plugin."""
+    plugin = int(model.sensor_plugin[sensor])
+    if plugin >= 0:
+        kind = kind_of(model, plugin)
+        return "plugin" if kind is None else kind.plugin
+    name = mujoco.mjtSensor(int(model.sensor_type[sensor])).name
+    return str(name).removeprefix("mjSENS_").lower()
