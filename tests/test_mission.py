@@ -20,12 +20,16 @@ LANE = 4.0
 class Puppet:
     """A box in an arena that a test moves by hand, and the referee that watches it."""
 
-    def __init__(self, task="course", arena=None, prefix="my/", mass=40.0, **options):
+    def __init__(self, task="course", arena=None, prefix="my/", mass=40.0, beam=0.0, **options):
         spec = arena or sauvc_arena(task)
         vehicle = mujoco.MjSpec()
         body = vehicle.worldbody.add_body(name="box")
         body.add_freejoint(name="box")
         body.add_geom(name="hull", type=mujoco.mjtGeom.mjGEOM_BOX, size=HALF, mass=mass)
+        if beam:
+            # what a sonar sees is drawn, and cannot be touched
+            drawn = {"contype": 0, "conaffinity": 0, "mass": 0.0}
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[beam, 0.0, 0.0], **drawn)
         spec.attach(vehicle, prefix=prefix, frame=spec.worldbody.add_frame())
         self.model = spec.compile()
         self.data = mujoco.MjData(self.model)
@@ -151,6 +155,12 @@ def test_a_vehicle_that_is_too_wide_as_it_is_turned_has_not_passed():
         shift = np.array([0.0, aside, 0.0])
         puppet.go(GATE - [1.0, 0.0, 0.0] + shift, GATE + [1.0, 0.0, 0.0] + shift, yaw=0.98)
         assert len(puppet.passed()) == count
+
+
+def test_what_is_only_drawn_is_no_part_of_the_vehicle():
+    puppet = Puppet(beam=1.0)
+    puppet.go(GATE - [2.0, 0.0, 0.0], GATE + [2.0, 0.0, 0.0])
+    assert len(puppet.passed()) == 1
 
 
 def count_by_hand(start, end, yaw):

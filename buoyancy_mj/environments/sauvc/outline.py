@@ -25,6 +25,7 @@ class Poses(NamedTuple):
 class Outline:
     """The corners of what holds each body of a vehicle: the convex hull of its geoms.
 
+    Geoms that can be touched count; those that are only drawn do where a vehicle has no others.
     What is on one side of a plane with all its corners is there as a whole.
 
     Args:
@@ -40,13 +41,18 @@ class Outline:
         data = mujoco.MjData(model)
         mujoco.mj_kinematics(model, data)
 
+        # what can be touched, or all that is drawn where nothing can
+        solid = (model.geom_contype != 0) | (model.geom_conaffinity != 0)
+        own = np.isin(model.geom_bodyid, bodies)
+        counted = own & solid if (own & solid).any() else own
+
         # the geoms of bodies that move as one are held by one hull
         carriers = model.body_weldid[model.geom_bodyid]
         self._bodies, self._corners = [], []
         for body in sorted({int(model.body_weldid[body]) for body in bodies}):
             points = [
                 _read_corners(model, data, geom, body)
-                for geom in np.flatnonzero(carriers == body).tolist()
+                for geom in np.flatnonzero(counted & (carriers == body)).tolist()
             ]
             corners = np.concatenate([np.zeros((0, 3)), *points])
             if len(corners):
