@@ -13,6 +13,7 @@ from buoyancy_mj.cli import app
 from buoyancy_mj.environments.sauvc.added_mass import Rod, state_rods
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import scene_from_table
+from buoyancy_mj.vehicle.control.course import Waypoint
 
 QUICK = ("--set", "added_mass=model")
 """What nobody needs to wait for where only the report is looked at."""
@@ -147,6 +148,20 @@ def test_a_way_point_that_changes_no_actuator_is_refused():
         r"the thrusters; did you mean 'environment/ball'\? possible: environment/ball",
     ):
         Simulation(read_scene(catalog.scene_path("sauvc_course"), settings))
+
+
+@pytest.mark.parametrize(
+    ("controls", "message"),
+    [
+        (1.0, "controls is 1.0; it must be a table of numbers by the names of actuators"),
+        ({"light": "on"}, "controls.light is 'on'; it must be a finite number"),
+        ({"light": float("nan")}, "controls.light is nan; it must be a finite number"),
+    ],
+)
+def test_controls_of_a_way_point_that_are_none_are_refused(controls, message):
+    with pytest.raises(ControlError) as caught:
+        Waypoint(position=(0.0, 0.0), controls=controls)
+    assert str(caught.value) == message
 
 
 def test_the_added_mass_of_a_rod_is_that_of_slender_bodies():
