@@ -323,8 +323,8 @@ def test_what_the_thrusters_cannot_hold_must_be_free():
     names = [name for name in PLACES if name != "up_front"]
     model, data = box(names)
     message = (
-        "the thrusters of 'rov' do not push along pitch alone in both directions, and its pitch "
-        "cannot be held; put 'pitch' into free"
+        "the thrusters of 'rov' do not push along pitch alone in both directions, which a hold "
+        "needs; give it free = ['pitch']"
     )
     with pytest.raises(ControlError) as caught:
         start_controller(Hold(), model, data)
@@ -836,3 +836,13 @@ def test_a_controller_in_a_loop_knows_the_level_of_the_water():
     data.qpos[2] = 1.0
     poses = steer(start_controller(Hold(depth=1.2), model, data), model, data, 10.0)
     assert poses[-1, 2] == pytest.approx(0.8, abs=0.02)
+
+
+def test_a_controller_works_alike_where_the_water_is_a_callback():
+    """There the rest is found on a model of its own, whose water is a part of it."""
+    ends = []
+    for through in ("qfrc_passive", "xfrc_applied"):
+        scene = read_scene(catalog.scenes()["bluerov2_heavy_station"], ["duration=1"])
+        simulation = Simulation(scene, through=through)
+        ends.append(run_out(simulation)[-1])
+    np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)

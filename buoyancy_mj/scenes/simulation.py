@@ -112,9 +112,8 @@ class Simulation(ReadOnly):
         if scene.control:
             with self._lend_water(), raise_causes():
                 mujoco.mj_forward(self.model, self.data)
-            # MuJoCo compiles no other model while a callback in Python is installed
-            with raise_causes():
-                self._steering = Steering(scene, self.model, self.data, afloat, trust=trust)
+            # without the water that is lent: it would act while another model is compiled
+            self._steering = Steering(scene, self.model, self.data, afloat, trust=trust)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
     @property

@@ -56,7 +56,7 @@ class Steering:
 
     Args:
         scene: the scene.
-        model: its model, with its water in it or lent.
+        model: its model.
         data: its state at the start, after mj_forward.
         afloat: what floats of its vehicles.
         trust: whether to run the Python files that the scene names.
@@ -79,7 +79,7 @@ class Steering:
         self._model = model
         self._done = 0
         self._helms: list[_Helm] = []
-        with contextlib.ExitStack() as stack:
+        with contextlib.ExitStack() as stack, raise_causes():
             rest = model, data
             if any(control.needs_rest for control in scene.control):
                 rest = stack.enter_context(_still_sea(scene, model, data))

@@ -25,6 +25,8 @@ HELD = {
     "pitch": ("pitch",),
 }
 """What is held, and the axes along which thrusters must push for it."""
+WEAKEST = 1e-6
+"""Push along an axis [N, N m] below which there is none."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -224,14 +226,19 @@ class HoldController:
 
 def _check_axes(hold: Hold, allocation: Allocation, name: str) -> None:
     """Refuse to hold what no thruster can."""
-    for held, axes in HELD.items():
-        # along each axis, in both directions
-        weak = [axis for axis in axes if np.abs(allocation.reach[AXES.index(axis)]).min() < 1e-6]
-        if held not in hold.free and weak:
-            raise ControlError(
-                f"the thrusters of '{name}' do not push along {' and '.join(weak)} alone in both "
-                f"directions, and its {held} cannot be held; put '{held}' into free"
-            )
+    # the lesser of both directions along each axis
+    weak = {
+        axis
+        for axis, reach in zip(AXES, allocation.reach, strict=True)
+        if np.abs(reach).min() < WEAKEST
+    }
+    lost = [key for key, axes in HELD.items() if key not in hold.free and weak & {*axes}]
+    if lost:
+        axes = [axis for axis in AXES if axis in weak and any(axis in HELD[key] for key in lost)]
+        raise ControlError(
+            f"the thrusters of '{name}' do not push along {', '.join(axes)} alone in both "
+            f"directions, which a hold needs; give it free = {lost}"
+        )
 
 
 def _plan_course(hold: Hold, motion: Motion, level: float) -> Course:
