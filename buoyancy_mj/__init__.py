@@ -10,6 +10,11 @@ from importlib.metadata import version as _version
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.engine.plugin import add_water as add_water
 from buoyancy_mj.engine.plugin import water_in as water_in
+from buoyancy_mj.environments.sauvc.arena import sauvc_arena as sauvc_arena
+from buoyancy_mj.environments.sauvc.mission import Mission as Mission
+from buoyancy_mj.environments.sauvc.mission import mission as mission
+from buoyancy_mj.environments.sauvc.report import Event as Event
+from buoyancy_mj.environments.sauvc.report import MissionReport as MissionReport
 from buoyancy_mj.errors import BallastError as BallastError
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning

@@ -23,6 +23,7 @@ from buoyancy_mj.cli.flags import (
     check_table_name,
 )
 from buoyancy_mj.cli.signals import raise_received
+from buoyancy_mj.environments.sauvc.report import MissionReport
 from buoyancy_mj.errors import RecordingError, SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Frame
@@ -77,10 +78,13 @@ def run(
 
     # its summary
     summary = simulation.summary()
+    report = simulation.mission.report if simulation.mission else None
     if as_json:
-        typer.echo(_to_json(summary, recording, table))
+        typer.echo(_to_json(summary, recording, table, report))
         return
     out.print(_to_table(summary))
+    if report is not None:
+        out.print(_to_mission_table(report))
     if recording is not None:
         print_line(out, f"open the recording: {viewer_command(recording)}")
     if table is not None:
@@ -174,14 +178,29 @@ def _to_table(summary: Summary) -> Table:
     return table
 
 
-def _to_json(summary: Summary, recording: Path | None, table: Path | None) -> str:
-    """A summary and the paths of its files as JSON, which knows finite numbers only."""
+def _to_mission_table(report: MissionReport) -> Table:
+    """What a referee has seen, as a table."""
+    table = Table(title=f"mission: {report.task}", show_header=False, title_justify="left")
+    for row in report.rows():
+        table.add_row(*row)
+    return table
+
+
+def _to_json(
+    summary: Summary, recording: Path | None, table: Path | None, report: MissionReport | None
+) -> str:
+    """A summary, the paths of its files and what a referee has seen, as JSON.
+
+    JSON knows finite numbers only.
+    """
     values: dict[str, Any] = summary.values()
     if len(summary.vehicles) > 1:
         # a table for each vehicle, in place of names with dots
         values = dataclasses.asdict(summary)
     for name, path in (("recording", recording), ("series", table)):
         values[name] = str(path) if path else None
+    if report is not None:
+        values |= {"mission": report.values()}
     return json.dumps(_drop_infinite(values), indent=2)
 
 

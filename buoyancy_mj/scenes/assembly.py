@@ -12,6 +12,8 @@ import numpy as np
 from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.engine.checks import skips_passive
 from buoyancy_mj.engine.plugin import add_water
+from buoyancy_mj.environments.missions import MISSIONS
+from buoyancy_mj.environments.sauvc.arena import sauvc_arena
 from buoyancy_mj.errors import BuoyancyWarning, EngineError, ModelError, SceneError
 from buoyancy_mj.loads.coefficients import add_coefficients
 from buoyancy_mj.loads.full_inertia import keep_full_inertia, make_room
@@ -103,10 +105,18 @@ def _join_files(scene: Scene) -> tuple[mujoco.MjSpec, tuple[Part, ...]]:
         parts = [_attach_entry(spec, scene, entry) for entry in scene.entries]
     if scene.environment is not None:
         path = catalog.environment_path(scene.environment, scene.folder)
-        environment = read_spec(path)
-        remove_water(environment)
+        environment = _read_environment(scene, path)
         attach_spec(spec, _path_of(scene), environment, path, f"{ENVIRONMENT}/")
     return spec, tuple(parts)
+
+
+def _read_environment(scene: Scene, path: Path) -> mujoco.MjSpec:
+    """The surroundings, from their file or laid out anew, without water."""
+    if scene.layout is not None and scene.environment is not None:
+        return sauvc_arena(MISSIONS[scene.environment], scene.layout)
+    environment = read_spec(path)
+    remove_water(environment)
+    return environment
 
 
 def _attach_entry(spec: mujoco.MjSpec, scene: Scene, entry: SceneVehicle) -> Part:

@@ -172,10 +172,14 @@ def _run_alone(simulation: Simulation) -> str:
 
 
 def _can_batch(simulation: Simulation) -> bool:
-    """Whether the engine can step a simulation by itself: controllers are Python, step by step."""
+    """Whether the engine can step a simulation by itself.
+
+    Controllers and referees are Python, step by step.
+    """
     return bool(
         plugin_instances(simulation.model)
         and not simulation.scene.control
+        and simulation.mission is None
         and _trajectory_size(simulation) <= MOST_MEMORY
     )
 

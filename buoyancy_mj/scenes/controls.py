@@ -95,7 +95,13 @@ def _read_inner_tables(table: dict[str, Any], where: str) -> dict[str, Any]:
                 "[[control.waypoints]]"
             )
         fields["waypoints"] = tuple(
-            build(Waypoint, table_of(waypoint, f"{place}.{i}"), f"{place}.{i}")
-            for i, waypoint in enumerate(waypoints)
+            _read_waypoint(waypoint, f"{place}.{i}") for i, waypoint in enumerate(waypoints)
         )
     return fields
+
+
+def _read_waypoint(value: Any, where: str) -> Waypoint:
+    """A way-point from its table, with the table of the controls that it changes."""
+    table = dict(table_of(value, where))
+    controls = table_of(table.pop("controls", {}), f"{where}.controls")
+    return build(Waypoint, table, where, controls=controls)

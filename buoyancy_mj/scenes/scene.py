@@ -7,6 +7,8 @@ from typing import Any
 
 import mujoco
 
+from buoyancy_mj.environments.missions import MISSIONS
+from buoyancy_mj.environments.sauvc.layout import read_seed
 from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.scenes.controls import check_controls, controls_from_tables
@@ -58,6 +60,12 @@ class Scene(Settings):
     """Several vehicles instead of the one, each with its own start and masses."""
     environment: str | None = None
     """MJCF file of the surroundings, or the name of an environment that ships."""
+    layout: int | None = None
+    """Seed that draws where the props of such an environment stand, within the rules; the
+    environment is sauvc_qualification or sauvc_course. None for the layout that ships."""
+    mission: str | None = None
+    """What a referee watches the vehicle do in the environment: sauvc_qualification or
+    sauvc_course."""
     duration: float = 5.0
     """Simulated time [s]."""
     timestep: float = 0.01
@@ -99,6 +107,7 @@ class Scene(Settings):
         object.__setattr__(self, "control", controls)
         check_controls(controls)
         self._check_vehicles()
+        self._check_mission()
         object.__setattr__(self, "vehicles", name_vehicles(self.vehicles))
         if self.integrator.lower() not in INTEGRATORS:
             raise SceneError(
@@ -136,6 +145,28 @@ class Scene(Settings):
                         f"{key} is given beside [[vehicles]]; give it to one of them, "
                         f"as vehicles.0.{key}"
                     )
+
+    def _check_mission(self) -> None:
+        """Refuse a mission that nobody knows, or of which it is open who takes part or where."""
+        if self.layout is not None:
+            if self.environment not in MISSIONS:
+                raise SceneError(
+                    f"layout is {describe(self.layout)}, and the environment is "
+                    f"{describe(self.environment)}, of which there is one layout; leave layout "
+                    f"out, or take another environment; {choices(self.environment, MISSIONS)}"
+                )
+            read_seed(self.layout, "layout")
+        if self.mission is None:
+            return
+        if self.mission not in MISSIONS:
+            raise SceneError(
+                f"unknown mission {describe(self.mission)}; {choices(self.mission, MISSIONS)}"
+            )
+        if len(self.entries) > 1:
+            raise SceneError(
+                f"mission is '{self.mission}' beside {len(self.entries)} vehicles, and a referee "
+                "watches one; leave one vehicle, or watch it in a loop of your own"
+            )
 
     def _values_of_the_one(self) -> dict[str, Any]:
         """What the scene says of its one vehicle, by key."""

@@ -15,7 +15,10 @@ from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.engine.callbacks import PASSIVE
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
+from buoyancy_mj.environments.missions import MISSIONS
+from buoyancy_mj.environments.sauvc.mission import Mission
 from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.divergence import Limits
@@ -81,6 +84,10 @@ class Simulation(ReadOnly):
         warn_of_obstacles(self.model, start, self.vehicles, scene.water.level)
         self._limits = Limits(scene, self.model, start)
         self._wall_time = 0.0
+
+        # who watches
+        self.mission = self._start_mission()
+        """The referee of the scene's mission; None without one."""
 
         # compile what a fresh installation has not compiled, before the clock runs
         with self._lend_water(), raise_causes():
@@ -183,6 +190,8 @@ class Simulation(ReadOnly):
         for monitor in self._source.monitors.values():
             monitor.add_poses(poses_of(self.data), before)
             monitor.add_contacts(self.data, now)
+        if self.mission is not None:
+            self.mission.update()
 
     def replay(self, trajectory: Trajectory, wall_time: float) -> None:
         """Take over a whole run that was stepped elsewhere, for the summary.
@@ -238,6 +247,18 @@ class Simulation(ReadOnly):
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the only vehicle, world frame."""
         return self.vehicle.centre_of_mass(data)
+
+    def _start_mission(self) -> Mission | None:
+        """The referee that the scene asks for."""
+        if self.scene.mission is None:
+            return None
+        return Mission(
+            self.model,
+            self.data,
+            task=MISSIONS[self.scene.mission],
+            vehicle=body_name(self.model, self.vehicle.root),
+            water=self.buoyancy.water,
+        )
 
     def _frame(self) -> Frame:
         """The present."""

@@ -28,6 +28,8 @@ BATCH_SIZE = 64
 """Most runs in a batch: a sweep that is killed loses no more."""
 _NO_COLUMNS = ("scene", "wall_time", "real_time_factor")
 """Values of the summary that become no columns: a digest stands for the scene, and time varies."""
+_OF_MISSION = ("points", "mission_time")
+"""Columns of a scene with a mission: its points, and the length of the attempt [s]."""
 _OF_FILES = ("MuJoCo cannot read", "Error opening file", "ould not allocate")
 """Words of errors that have to do with files or memory, and not with the values of a run."""
 
@@ -113,9 +115,11 @@ class Sweep:
     def _results(self) -> list[str]:
         """Columns of the summary; a sweep with several vehicles has NAME.column for each."""
         vehicles = self._name_vehicles()
-        controls = read_scene(self.path, self.settings).control
-        steered = [control.vehicle or vehicles[0] for control in controls]
+        scene = read_scene(self.path, self.settings)
+        steered = [control.vehicle or vehicles[0] for control in scene.control]
         names = list_values(vehicles, steered)
+        if scene.mission is not None:
+            names += _OF_MISSION
         return [name for name in names if name not in (*_NO_COLUMNS, *self.keys)]
 
     def _name_vehicles(self) -> list[str]:
@@ -197,7 +201,12 @@ class Sweep:
             "reason": " ".join(reason.split()),
         }
         row |= dict(zip(self.keys, self.values[run], strict=True))
-        results = simulation.summary().values() if simulation and not reason else {}
+        results: dict[str, Any] = {}
+        if simulation and not reason:
+            results = simulation.summary().values()
+            if simulation.mission is not None:
+                report = simulation.mission.report
+                results |= dict(zip(_OF_MISSION, (report.points, report.run_time), strict=True))
         return row | {name: results.get(name) for name in self._results}
 
 

@@ -2,14 +2,14 @@
 
 import dataclasses
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.errors import ControlError
-from buoyancy_mj.values import read_array, set_number
+from buoyancy_mj.errors import ControlError, describe
+from buoyancy_mj.values import read_array, read_number, set_number
 from buoyancy_mj.vehicle.control.motion import Motion
 
 LEAD = 1.0
@@ -37,6 +37,9 @@ class Waypoint:
     """Distance [m] within which the place is reached."""
     stay: float = 0.0
     """Time [s] that the vehicle stays within the radius before it goes on."""
+    controls: Mapping[str, float] = dataclasses.field(default_factory=dict)
+    """Controls of other actuators that change as it goes on, by their names in the model: a
+    gripper, a light."""
 
     def __post_init__(self) -> None:
         position = read_array(ControlError, "position", self.position, (2,))
@@ -46,6 +49,16 @@ class Waypoint:
                 set_number(self, ControlError, name)
         set_number(self, ControlError, "radius", above=0.0)
         set_number(self, ControlError, "stay", least=0.0)
+        if not isinstance(self.controls, Mapping):
+            raise ControlError(
+                f"controls is {describe(self.controls)}; it must be a table of numbers by the "
+                "names of actuators"
+            )
+        controls = {
+            name: read_number(ControlError, f"controls.{name}", value)
+            for name, value in self.controls.items()
+        }
+        object.__setattr__(self, "controls", controls)
 
 
 class Reference(NamedTuple):

@@ -15,6 +15,7 @@ from buoyancy_mj.vehicle.control.course import Course, Waypoint
 from buoyancy_mj.vehicle.control.gains import Gains, choose_gains
 from buoyancy_mj.vehicle.control.motion import ControlSensors, Motion, Reader
 from buoyancy_mj.vehicle.control.rotations import find_rotation_vector, rotate_heading
+from buoyancy_mj.vehicle.control.switches import find_switches
 
 HELD = {
     "position": ("surge", "sway"),
@@ -168,6 +169,7 @@ class HoldController:
         self._hold, self._level = hold, outset.level
         self.course: Course
         """Where the vehicle should be."""
+        self._switches = find_switches(hold.waypoints, outset.model, self.allocation.names)
         self._time: float
         self._force: NDArray[np.float64]
         self._torque: NDArray[np.float64]
@@ -180,7 +182,10 @@ class HoldController:
             # the data were reset
             self._begin(motion, time)
         timestep, self._time = time - self._time, time
+        passed = self.course.passed
         reference = self.course.advance(motion, time, timestep)
+        for switch in self._switches[passed : self.course.passed]:
+            data.ctrl[switch.addresses] = switch.levels
 
         # errors of place along the axes of the heading, of attitude along those of the body
         turn = rotate_heading(motion.heading)
