@@ -10,6 +10,7 @@ from importlib.metadata import version as _version
 from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
 from buoyancy_mj.engine.plugin import add_water as add_water
 from buoyancy_mj.engine.plugin import water_in as water_in
+from buoyancy_mj.errors import AutopilotError as AutopilotError
 from buoyancy_mj.errors import BallastError as BallastError
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning

@@ -1,18 +1,15 @@
 """`run`, `view` and `list`: one scene at a time."""
 
-import dataclasses
-import json
-import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.progress import TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import err, out, print_line, show_progress, viewer_command
+from buoyancy_mj.cli.console import err, out, show_progress
 from buoyancy_mj.cli.flags import (
     Json,
     RunFlags,
@@ -21,16 +18,14 @@ from buoyancy_mj.cli.flags import (
     SelectionFlags,
     check_recording_name,
 )
+from buoyancy_mj.cli.recordings import Recordings
 from buoyancy_mj.cli.signals import raise_received
-from buoyancy_mj.errors import RecordingError, SceneError
+from buoyancy_mj.cli.summaries import print_openers, summary_json, summary_table
+from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
-from buoyancy_mj.scenes.summary import Summary
-
-if TYPE_CHECKING:
-    from buoyancy_mj.viz.recording import Recording
 
 
 @command()
@@ -69,16 +64,15 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    recording = _run_to_end(simulation, target, live=live)
+    paths = _run_to_end(simulation, Recordings(simulation, target, live=live))
 
     # its summary
     summary = simulation.summary()
     if as_json:
-        typer.echo(_to_json(summary, recording))
+        typer.echo(summary_json(summary, paths))
         return
-    out.print(_to_table(summary))
-    if recording is not None:
-        print_line(out, f"open the recording: {viewer_command(recording)}")
+    out.print(summary_table(summary))
+    print_openers(paths)
 
 
 @command("list")
@@ -104,35 +98,15 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
     view_simulation(Simulation(read_scene(catalog.scene_path(scene), settings)))
 
 
-def _run_to_end(simulation: Simulation, target: Path | None, *, live: bool) -> Path | None:
-    """Run to the end, and record to a file, to a live viewer, or to both; the file."""
-    if target is None and not live:
-        _run_frames(simulation, lambda _: None)
-        return None
-    from buoyancy_mj.viz.recording import Recording  # needs Rerun, which takes time to import
-
-    recording = Recording(simulation, target, live=live)
+def _run_to_end(simulation: Simulation, recordings: Recordings) -> list[Path]:
+    """Run to the end, and record; the files."""
     try:
-        _run_frames(simulation, recording.add)
-        return recording.close(simulation.summary())
+        _run_frames(simulation, recordings.add)
+        return recordings.close(simulation.summary())
     except BaseException:
         # whatever ends the run, what was recorded stays
-        if not recording.closed:
-            _keep_partial(recording)
+        recordings.keep(simulation.summary)
         raise
-
-
-def _keep_partial(recording: "Recording") -> None:
-    """Close a recording that broke off, and say where it is."""
-    simulation = recording.simulation
-    try:
-        partial = recording.close(simulation.summary(), complete=False)
-    except RecordingError as error:
-        print_line(err, f"note: {error}", style="yellow")
-    else:
-        if partial is not None:
-            time = simulation.data.time
-            print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
 
 
 def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
@@ -144,34 +118,3 @@ def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
             raise_received()
             add(frame)
             update(completed=frame.time)
-
-
-def _to_table(summary: Summary) -> Table:
-    """A summary as a table, with a column for each of several vehicles."""
-    several = len(summary.vehicles) > 1
-    table = Table(title=summary.scene, show_header=several, title_justify="left")
-    for name in ("", *summary.vehicles):
-        table.add_column(name)
-    for row in summary.rows():
-        table.add_row(*row)
-    if several:
-        table.caption = summary.caption
-        table.caption_justify = "left"
-    return table
-
-
-def _to_json(summary: Summary, recording: Path | None) -> str:
-    """A summary and the path of its recording as JSON, which knows finite numbers only."""
-    values: dict[str, Any] = summary.values()
-    if len(summary.vehicles) > 1:
-        # a table for each vehicle, in place of names with dots
-        values = dataclasses.asdict(summary)
-    values |= {"recording": str(recording) if recording else None}
-    return json.dumps(_drop_infinite(values), indent=2)
-
-
-def _drop_infinite(value: Any) -> Any:
-    """The same values, but None for each number that is not finite."""
-    if isinstance(value, dict):
-        return {key: _drop_infinite(item) for key, item in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value

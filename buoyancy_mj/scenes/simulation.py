@@ -135,7 +135,7 @@ class Simulation(ReadOnly):
                 reason: see `Limits`.
         """
         started = time.perf_counter()
-        yield self._frame()
+        yield self.frame()
         recorded = 0
         for step in range(1, self.steps + 1):
             self.step()
@@ -143,7 +143,7 @@ class Simulation(ReadOnly):
             due = math.floor(step * self.scene.timestep * self.scene.record_rate + 1e-9)
             if due > recorded or step == self.steps:
                 recorded = due
-                frame = self._frame()
+                frame = self.frame()
                 self._wall_time = time.perf_counter() - started
                 yield frame
         self._wall_time = time.perf_counter() - started
@@ -202,26 +202,13 @@ class Simulation(ReadOnly):
             monitor.add_poses(poses, float(self.data.time))
         self._wall_time = wall_time
 
-    def summary(self) -> Summary:
-        """Sum up the run so far."""
-        end = float(self.data.time)
-        return Summary(
-            scene=self.scene.title,
-            method=self.scene.method.name,
-            vehicles={
-                name: monitor.summary(end - LAST) for name, monitor in self._monitors.items()
-            },
-            simulated_time=end,
-            wall_time=self._wall_time,
-            real_time_factor=end / self._wall_time if self._wall_time else math.nan,
-        )
+    def frame(self) -> Frame:
+        """The present; on other data, since mj_forward on the running data would disturb the run.
 
-    def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
-        """Centre of mass (3,) [m] of the only vehicle, world frame."""
-        return self.vehicle.centre_of_mass(data)
-
-    def _frame(self) -> Frame:
-        """The present, on other data: mj_forward on the running data would disturb the run."""
+        Raises:
+            DivergenceError: a position, velocity or acceleration left the finite numbers, or all
+                reason: see `Limits`.
+        """
         # poses and loads at exactly this time
         data = self._frame_data
         self._copy_state()
@@ -240,6 +227,24 @@ class Simulation(ReadOnly):
                 name: observer.observe(data, loads) for name, observer in self._observers.items()
             },
         )
+
+    def summary(self) -> Summary:
+        """Sum up the run so far."""
+        end = float(self.data.time)
+        return Summary(
+            scene=self.scene.title,
+            method=self.scene.method.name,
+            vehicles={
+                name: monitor.summary(end - LAST) for name, monitor in self._monitors.items()
+            },
+            simulated_time=end,
+            wall_time=self._wall_time,
+            real_time_factor=end / self._wall_time if self._wall_time else math.nan,
+        )
+
+    def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
+        """Centre of mass (3,) [m] of the only vehicle, world frame."""
+        return self.vehicle.centre_of_mass(data)
 
     def _copy_state(self) -> None:
         """Copy the state of the run to the data of frames."""
