@@ -72,6 +72,7 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+from buoyancy_mj.viz.recorder import Recorder as Recorder
 
 __version__ = _version("buoyancy_mj")
 

@@ -19,6 +19,85 @@ _NEW = os.O_RDWR | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0)
 _NEVER_WAIT = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
 
 
+class GrowingFile:
+    """A file that grows piece by piece, and survives whatever ends it.
+
+    It grows under the name `NAME.partial.EXT`, or `NAME.partial-2.EXT` and so on where that exists,
+    and takes its own when it is whole: a file which was there is replaced at once or not at all.
+
+    Args:
+        path: the file; its folder is made.
+        grows_as: the end of the name under which it grows, as '.csv'; '' for that of its own.
+
+    Raises:
+        BlockingIOError: another process is writing it; `filename` names where.
+        OSError: it cannot be made; `strerror` says why.
+    """
+
+    def __init__(self, path: Path, grows_as: str = "") -> None:
+        self.path = path
+        """The name of the whole file."""
+        self.partial: Path
+        """The name under which it grows."""
+        self.closed = False
+        """Whether the file has its name already, or was discarded."""
+        self.size = 0
+        """Bytes written so far."""
+        if path.is_dir():
+            raise OSError(0, "it is a folder", str(path))
+        if path.exists() and not path.is_file():
+            raise OSError(0, "it is no regular file", str(path))
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._descriptor, self.partial = open_partial(path.with_suffix(grows_as or path.suffix))
+
+    def append(self, piece: bytes | memoryview) -> None:
+        """Append a piece, whole or not at all.
+
+        Raises:
+            OSError: the disk is full or gone; the file ends with its last whole piece.
+        """
+        rest = memoryview(piece)
+        try:
+            while rest:
+                rest = rest[os.write(self._descriptor, rest) :]
+        except OSError:
+            with contextlib.suppress(OSError):
+                os.ftruncate(self._descriptor, self.size)
+            raise
+        self.size += len(piece)
+
+    def close(self) -> None:
+        """Write no more; the file keeps the name under which it grew."""
+        if not self.closed:
+            os.close(self._descriptor)
+            self.closed = True
+
+    def take_name(self, *, complete: bool) -> Path:
+        """Give the closed file its name.
+
+        An incomplete one does not replace a file that is there, and keeps the name under which it
+        grew.
+
+        Args:
+            complete: whether all that should be in the file is in it.
+
+        Returns:
+            Where the file is.
+
+        Raises:
+            OSError: it cannot take its name.
+        """
+        if not complete and os.path.lexists(self.path):
+            return self.partial
+        os.replace(self.partial, self.path)
+        return self.path
+
+    def discard(self) -> None:
+        """Remove the file of something that never began."""
+        self.close()
+        self.partial.unlink(missing_ok=True)
+
+
 def open_partial(path: Path) -> tuple[int, Path]:
     """Make a file in which the file at `path` may grow, and lock it.
 

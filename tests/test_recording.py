@@ -415,7 +415,7 @@ def test_a_run_that_breaks_off_says_why_and_where_its_recording_is(tmp_path, mon
 
 def test_a_full_disk_at_the_end_of_a_run_that_diverged_hides_neither(tmp_path, monkeypatch):
     def full(self):
-        if self._written > 100_000:
+        if self._file.size > 100_000:
             self.close(complete=False)
             raise RecordingError("the recording broke off: No space left on device; ...")
         return write(self)
@@ -477,9 +477,9 @@ def test_the_camera_looks_at_the_surface_or_at_a_vehicle_that_is_deep(
 ):
     seen = []
 
-    def run_blueprint(title, look_at, *others):
+    def run_blueprint(title, look_at, *others, **options):
         seen.append(look_at)
-        return blueprints.run_blueprint(title, look_at, *others)
+        return blueprints.run_blueprint(title, look_at, *others, **options)
 
     monkeypatch.setattr(recording_module, "run_blueprint", run_blueprint)
     recorded(tmp_path / "run.rrd", "auv_drop_still", [*SHORT, f"start.position.2={height}"])

@@ -30,8 +30,9 @@ class PulseMap:
     """
 
     def __init__(self, model: mujoco.MjModel, channels: Sequence[Channel]) -> None:
-        for channel in channels:
-            if not model.actuator_ctrllimited[channel.actuator]:
+        addresses = model.actuator_ctrladr[[channel.actuator for channel in channels]]
+        for channel, address in zip(channels, addresses, strict=True):
+            if not model.actuator_ctrllimited[address]:
                 raise AutopilotError(
                     f"actuator '{channel.name}' has no ctrlrange, so nobody knows what a full "
                     "pulse means; give it one"
@@ -39,9 +40,9 @@ class PulseMap:
         self.highest = max(channel.number for channel in channels)
         """Number of the last output that drives something."""
         self._indices = np.array([channel.number - 1 for channel in channels])
-        self._actuators = np.array([channel.actuator for channel in channels])
+        self._addresses = addresses
         self._signs = np.array([channel.sign for channel in channels])
-        low, high = model.actuator_ctrlrange[self._actuators].T
+        low, high = model.actuator_ctrlrange[addresses].T
         self._neutral = np.where((low < 0.0) & (high > 0.0), 0.0, 0.5 * (low + high))
         self._ahead = high - self._neutral
         self._astern = self._neutral - low
@@ -57,4 +58,4 @@ class PulseMap:
         widths[widths == 0.0] = NEUTRAL
         throttle = self._signs * np.clip((widths - NEUTRAL) / SPAN, -1.0, 1.0)
         scale = np.where(throttle > 0.0, self._ahead, self._astern)
-        ctrl[self._actuators] = self._neutral + throttle * scale
+        ctrl[self._addresses] = self._neutral + throttle * scale

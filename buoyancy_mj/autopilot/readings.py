@@ -12,6 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.engine.instances import plugin_name
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.simulation import Simulation
 
@@ -19,6 +20,8 @@ HALF_TURN = np.array([1.0, -1.0, -1.0])
 """Signs that turn axes with z up into axes with z down, and back."""
 FAR = 1.0e4
 """What a range finder tells where it meets nothing [m]: beyond the range of any."""
+ALTIMETER = "buoyancy_mj.altimeter"
+"""Plugin of the altimeters, which are range finders too."""
 RANGE_FINDERS = 6
 """The most range finders that the JSON interface knows."""
 _IMU = "imu"
@@ -51,7 +54,7 @@ class Readings:
 
     Its frame is that of the vehicle's site `imu`, or of its root body where there is none. All that
     is sensed belongs to that one place: it is where the accelerometer is, and its position and
-    velocity are told. Range finders are MuJoCo's, in the order of the model.
+    velocity are told. Range finders are MuJoCo's, and altimeters, in the order of the model.
 
     Pose, velocity and angular velocity are those at the end of a step. The specific force is the
     engine's accelerometer in the steps since the last reading, on average: summed over time it
@@ -120,7 +123,7 @@ class Readings:
             position=_plain(position),
             attitude=_plain(quaternion),
             velocity=_plain(velocity * HALF_TURN),
-            distances=tuple(FAR if d < 0.0 else d for d in data.sensordata[self._finders].tolist()),
+            distances=tuple(d if d >= 0.0 else FAR for d in data.sensordata[self._finders].tolist()),
         )
 
 
@@ -152,8 +155,16 @@ def _find_range_finders(model: mujoco.MjModel, vehicle: Vehicle) -> NDArray[np.i
     own = [
         int(model.sensor_adr[i])
         for i in range(model.nsensor)
-        if model.sensor_type[i] == mujoco.mjtSensor.mjSENS_RANGEFINDER
+        if _finds_range(model, i)
         and model.sensor_objtype[i] == mujoco.mjtObj.mjOBJ_SITE
         and model.site_bodyid[model.sensor_objid[i]] in vehicle.bodies
     ]
     return np.array(own[:RANGE_FINDERS], dtype=np.int64)
+
+
+def _finds_range(model: mujoco.MjModel, sensor: int) -> bool:
+    """Whether the first number of a sensor is a distance along a ray."""
+    kind, instance = model.sensor_type[sensor], int(model.sensor_plugin[sensor])
+    if kind == mujoco.mjtSensor.mjSENS_RANGEFINDER:
+        return bool(model.sensor_intprm[sensor, 0] & 1)
+    return instance >= 0 and plugin_name(model, instance) == ALTIMETER

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.autopilot.readings import HALF_TURN, find_imu, imu_pose
 from buoyancy_mj.scenes.fleet import Vehicle
+from buoyancy_mj.vehicle.channels import actuator_name
 
 _JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 
@@ -27,11 +28,10 @@ class Thruster(NamedTuple):
 
 
 def find_actuators(model: mujoco.MjModel, vehicle: Vehicle) -> dict[str, int]:
-    """The actuators of a vehicle by name, without that of the vehicle."""
+    """The actuators of a vehicle that have one control, by name, without that of the vehicle."""
     own = {}
-    for actuator in range(model.nu):
-        name = str(model.actuator(actuator).name) or f"actuator {actuator}"
-        prefix, _, short = name.rpartition("/")
+    for actuator in np.flatnonzero(model.actuator_ctrlnum == 1).tolist():
+        prefix, _, short = actuator_name(model, actuator).rpartition("/")
         body = _find_body(model, actuator)
         if body in vehicle.bodies or (body is None and prefix in ("", vehicle.name)):
             own[short] = actuator

@@ -24,6 +24,8 @@ from buoyancy_mj.engine.checks import (
     warn_of_no_waterplane,
 )
 from buoyancy_mj.engine.compiled import CompiledWater
+from buoyancy_mj.engine.finding import keep_installed
+from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.readout import read_loads
 from buoyancy_mj.errors import EngineError
 from buoyancy_mj.hulls.bodies import group_floating_bodies
@@ -195,7 +197,8 @@ class Buoyancy(ReadOnly):
         """
         if through == callbacks.APPLIED:
             check_applied(self.model, self.causes)
-        with callbacks.install(self._acting, native, through=through, copies=copies):
+        link = callbacks.install(self._acting, native, through=through, copies=copies)
+        with link, keep_installed(self):
             yield self
 
     def act(self, data: mujoco.MjData) -> None:
@@ -209,6 +212,14 @@ class Buoyancy(ReadOnly):
         check_data(self.model, data)
         check_forwarded(data)
         self._acting.act(data)
+
+    def act_late(self, data: mujoco.MjData) -> None:
+        """Act where a pass calls mjcb_control, unless the water has acted in that pass already.
+
+        It is for `engine.forward`, which goes through the stages of a pass without that callback.
+        """
+        if not plugin_instances(data.model):
+            callbacks.act_in_control(self._acting, data)
 
     def external(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """`data.xfrc_applied` (nbody, 6) without the water, until the next pass puts it back.

@@ -170,6 +170,20 @@ def is_installed(water: ActingWater) -> bool:
         return _find(water) is not None
 
 
+def act_in_control(water: ActingWater, data: mujoco.MjData) -> None:
+    """Let a water act on data that a pass has brought to where MuJoCo calls mjcb_control.
+
+    That is for who goes through the stages of a pass without that callback. A water that acts among
+    the passive forces has acted in that pass already.
+    """
+    with _LOCK:
+        link = _find(water)
+    if link is not None and link.slot == "control" and link.through == APPLIED:
+        water.act_on_bodies(data)
+    elif link is None or link.slot == "control":
+        water.act(data)
+
+
 def _find(water: ActingWater) -> _Installed | None:
     """The link of a water in one of the chains that start at MuJoCo's callbacks; None without."""
     for slot in ("passive", "control"):

@@ -27,6 +27,13 @@ def plugin_instances(model: mujoco.MjModel) -> list[int]:
     return [i for i in range(model.nplugin) if model.plugin[i] == slot.value]
 
 
+def plugin_name(model: mujoco.MjModel, instance: int) -> str:
+    """The name of the plugin that an instance is of, ours or another's."""
+    find = layout.function("mjp_getPluginAtSlot", ctypes.POINTER(ctypes.c_char_p), ctypes.c_int)
+    # the name is the first field of an mjpPlugin
+    return bytes(find(int(model.plugin[instance]))[0]).decode()
+
+
 def instance_name(model: mujoco.MjModel, instance: int) -> str:
     """The name of an instance; '' without one."""
     return mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_PLUGIN, instance) or ""

@@ -5,11 +5,8 @@ A row with kx = ky = 0 is the whole level going up and down, the limit of an inf
 
 import math
 
-import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels import series
-from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.still_water import (
     LEAST_STRETCH,
     calm,
@@ -224,62 +221,3 @@ def _motion(waves, x, y, z, time):
     dw /= max(1.0 + near * strain, LEAST_STRETCH)
     du, dv = du - near * along * dw, dv - near * across * dw
     return u, v, w, du, dv, dw + far * mean_z
-
-
-# at many points, for Python
-
-
-@njit(cache=True, error_model="numpy")
-def elevations(waves, x, y, time, out):
-    """Write `elevation` at points x, y (n,) to `out` (n,).
-
-    Several are found at once, by cos a = 1 - 2 sin^2 a/2.
-    """
-    for i in range(x.shape[0]):
-        out[i] = 0.0
-    for w in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, w, AMPLITUDE)
-        phase = waves[w, PHASE] - waves[w, OMEGA] * time
-        for i in range(x.shape[0]):
-            turns = (kx * x[i] + ky * y[i] + phase) * (0.5 / math.pi)
-            a = (turns - math.floor(turns + 0.5)) * math.pi
-            half = series.sine(a)
-            out[i] += amplitude * (1.0 - 2.0 * half * half)
-
-
-@njit(cache=True, error_model="numpy")
-def slopes(waves, x, y, time, out):
-    """Write the gradient of the elevation at points x, y (n,) to `out` (n, 2)."""
-    for i in range(x.shape[0]):
-        _, out[i, 0], out[i, 1] = tangent(waves, x[i], y[i], time)
-
-
-@njit(cache=True, error_model="numpy")
-def heads(waves, points, level, time, out):
-    """Write `head` of waves at points (n, 3) to `out` (n,)."""
-    for i in range(points.shape[0]):
-        x, y, z = triple(points, i, 0)
-        out[i] = head(waves, x, y, z - level, time, True)
-
-
-@njit(cache=True, error_model="numpy")
-def velocities(waves, current, points, level, time, out):
-    """Write the velocity of current and waves [m/s] at points (n, 3) to `out` (n, 3)."""
-    for i in range(points.shape[0]):
-        x, y, z = triple(points, i, 0)
-        set_current(current, level - z, time, out[i])
-        add_velocity(waves, x, y, z - level, time, out[i])
-
-
-@njit(cache=True, error_model="numpy")
-def accelerations(waves, current, points, level, time, out):
-    """Write the acceleration of current and waves [m/s^2] at points (n, 3) to `out` (n, 3).
-
-    It is that of the waves' water, and the rate of the current at places that stay.
-    """
-    unused = np.empty(3)
-    for i in range(points.shape[0]):
-        x, y, z = triple(points, i, 0)
-        set_rate(current, time, out[i])
-        unused[:] = 0.0
-        add_motion(waves, x, y, z - level, time, unused, out[i])

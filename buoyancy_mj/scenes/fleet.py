@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.errors import BuoyancyWarning, ModelError
+from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.gravity import find_weighing_masses, read_gravity
 from buoyancy_mj.hulls.hull import Hull
+from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.scenes.parts import Afloat
 from buoyancy_mj.statics.vessel import PLAUSIBLE
 
@@ -79,28 +81,50 @@ def build_vehicles(
     Raises:
         ModelError: a vehicle displaces no water, or absurdly much or little for its mass.
     """
-    owners = np.array([hull.body for hull in buoyancy.hulls])
     vehicles = {}
     for group in afloat:
-        rows = np.flatnonzero(np.isin(owners, group.bodies))
-        hulls = tuple(buoyancy.hulls[row] for row in rows)
-        vehicle = vehicles[group.name] = Vehicle(
-            name=group.name,
-            bodies=group.bodies,
-            hulls=hulls,
-            rows=rows,
-            masses=model.body_mass[group.bodies],
-            weighing_masses=find_weighing_masses(model)[group.bodies],
-            gravity=read_gravity(model),
-            displacement=float(
-                buoyancy.water.density * sum(hull.displaced_volume for hull in hulls)
-            ),
-        )
+        vehicle = vehicles[group.name] = _make_vehicle(model, buoyancy, group.name, group.bodies)
         subject = "the vehicle" if len(afloat) == 1 else f"vehicle '{group.name}'"
         _check_scale(vehicle, subject)
         _warn_of_compensation(vehicle, subject)
     _warn_of_second_drag(model, buoyancy, afloat)
     return vehicles
+
+
+def find_vehicles(model: mujoco.MjModel, buoyancy: Buoyancy) -> dict[str, Vehicle]:
+    """What floats in a model, by the names of root bodies, in the order of the model.
+
+    Args:
+        model: any model.
+        buoyancy: the water in which it is.
+    """
+    wet = [hull.body for hull in buoyancy.hulls]
+    return {
+        body_name(model, int(bodies[0])): _make_vehicle(
+            model, buoyancy, body_name(model, int(bodies[0])), bodies
+        )
+        for bodies in group_floating_bodies(model)
+        if np.isin(bodies, wet).any()
+    }
+
+
+def _make_vehicle(
+    model: mujoco.MjModel, buoyancy: Buoyancy, name: str, bodies: NDArray[np.int64]
+) -> Vehicle:
+    """The vehicle that bodies (n,) are, the root body first."""
+    owners = np.array([hull.body for hull in buoyancy.hulls])
+    rows = np.flatnonzero(np.isin(owners, bodies))
+    hulls = tuple(buoyancy.hulls[row] for row in rows)
+    return Vehicle(
+        name=name,
+        bodies=bodies,
+        hulls=hulls,
+        rows=rows,
+        masses=model.body_mass[bodies],
+        weighing_masses=find_weighing_masses(model)[bodies],
+        gravity=read_gravity(model),
+        displacement=float(buoyancy.water.density * sum(hull.displaced_volume for hull in hulls)),
+    )
 
 
 def _check_scale(vehicle: Vehicle, subject: str) -> None:

@@ -20,15 +20,12 @@ from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.divergence import Limits
 from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles
+from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.frames import Frame, take_only
-from buoyancy_mj.scenes.monitor import Monitor
-from buoyancy_mj.scenes.observer import Observer
 from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.summary import LAST, Summary
 from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
-
-_STATE = mujoco.mjtState.mjSTATE_INTEGRATION
 
 
 class Simulation(ReadOnly):
@@ -71,31 +68,31 @@ class Simulation(ReadOnly):
         self.vehicles = build_vehicles(self.model, self.buoyancy, afloat)
         """What floats of the scene's vehicles, by name; surroundings are none of them."""
 
-        # the poses at the start
-        self._state = np.empty(mujoco.mj_stateSize(self.model, _STATE))
+        # frames, from the poses at the start on
+        self._source = FrameSource(self.model, self.buoyancy, self.vehicles)
+        self._source.copy_state(self.data)
+        start = self._source.data
         with raise_causes():
-            self._frame_data = mujoco.MjData(self.model)
-            self._copy_state()
-            mujoco.mj_fwdPosition(self.model, self._frame_data)
-        warn_of_obstacles(self.model, self._frame_data, self.vehicles, scene.water.level)
-        self._limits = Limits(scene, self.model, self._frame_data)
-
-        # what a run leaves
-        self._monitors = {
-            name: Monitor(self.model, vehicle, self.buoyancy.water)
-            for name, vehicle in self.vehicles.items()
-        }
-        self._observers = {
-            name: Observer(self.model, vehicle, self._monitors[name], self.buoyancy.water)
-            for name, vehicle in self.vehicles.items()
-        }
+            mujoco.mj_fwdPosition(self.model, start)
+        warn_of_obstacles(self.model, start, self.vehicles, scene.water.level)
+        self._limits = Limits(scene, self.model, start)
         self._wall_time = 0.0
 
         # compile what a fresh installation has not compiled, before the clock runs
         with self._lend_water(), raise_causes():
-            mujoco.mj_forward(self.model, self._frame_data)
+            mujoco.mj_forward(self.model, start)
         self.buoyancy.water.elevation(0.0, 0.0, 0.0)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
+
+    @property
+    def title(self) -> str:
+        """Title of the scene."""
+        return self.scene.title
+
+    @property
+    def text(self) -> str:
+        """The scene as TOML."""
+        return self.scene.text
 
     @property
     def vehicle(self) -> Vehicle:
@@ -163,7 +160,7 @@ class Simulation(ReadOnly):
         now = float(self.data.time)
         before = now - self.model.opt.timestep
         self._limits.check_data(self.data, before)
-        for monitor in self._monitors.values():
+        for monitor in self._source.monitors.values():
             monitor.add_poses(poses_of(self.data), before)
             monitor.add_contacts(self.data, now)
 
@@ -184,13 +181,13 @@ class Simulation(ReadOnly):
         for step, poses in enumerate(trajectory.poses):
             now = step * timestep
             self._limits.check_poses(poses, now)
-            for monitor in self._monitors.values():
+            for monitor in self._source.monitors.values():
                 monitor.add_poses(poses, now)
             if trajectory.ncon[step]:
-                self._frame_data.qpos[:] = starts[step]
-                mujoco.mj_fwdPosition(self.model, self._frame_data)
-                for monitor in self._monitors.values():
-                    monitor.add_contacts(self._frame_data, now + timestep)
+                self._source.data.qpos[:] = starts[step]
+                mujoco.mj_fwdPosition(self.model, self._source.data)
+                for monitor in self._source.monitors.values():
+                    monitor.add_contacts(self._source.data, now + timestep)
 
         # the end
         self.data.qpos[:] = trajectory.qpos[-1]
@@ -198,35 +195,18 @@ class Simulation(ReadOnly):
         mujoco.mj_fwdPosition(self.model, self.data)
         poses = poses_of(self.data)
         self._limits.check_poses(poses, float(self.data.time))
-        for monitor in self._monitors.values():
+        for monitor in self._source.monitors.values():
             monitor.add_poses(poses, float(self.data.time))
         self._wall_time = wall_time
 
     def frame(self) -> Frame:
-        """The present; on other data, since mj_forward on the running data would disturb the run.
+        """The present, computed beside the run, which goes on as it would without.
 
         Raises:
             DivergenceError: a position, velocity or acceleration left the finite numbers, or all
                 reason: see `Limits`.
         """
-        # poses and loads at exactly this time
-        data = self._frame_data
-        self._copy_state()
-        with self._lend_water(), raise_causes():
-            mujoco.mj_forward(self.model, data)
-        now = float(data.time)
-        self._limits.check_data(data, now)
-        loads = self.buoyancy.loads(data)
-        for monitor in self._monitors.values():
-            monitor.add_poses(poses_of(data), now)
-        return Frame(
-            time=now,
-            data=data,
-            loads=loads,
-            vehicles={
-                name: observer.observe(data, loads) for name, observer in self._observers.items()
-            },
-        )
+        return self._source.take(self.data, self._forward)
 
     def summary(self) -> Summary:
         """Sum up the run so far."""
@@ -235,7 +215,7 @@ class Simulation(ReadOnly):
             scene=self.scene.title,
             method=self.scene.method.name,
             vehicles={
-                name: monitor.summary(end - LAST) for name, monitor in self._monitors.items()
+                name: monitor.summary(end - LAST) for name, monitor in self._source.monitors.items()
             },
             simulated_time=end,
             wall_time=self._wall_time,
@@ -246,7 +226,8 @@ class Simulation(ReadOnly):
         """Centre of mass (3,) [m] of the only vehicle, world frame."""
         return self.vehicle.centre_of_mass(data)
 
-    def _copy_state(self) -> None:
-        """Copy the state of the run to the data of frames."""
-        mujoco.mj_getState(self.model, self.data, self._state, _STATE)
-        mujoco.mj_setState(self.model, self._frame_data, self._state, _STATE)
+    def _forward(self, data: mujoco.MjData) -> None:
+        """A pass over the data of a frame, which may have left all reason."""
+        with self._lend_water(), raise_causes():
+            mujoco.mj_forward(self.model, data)
+        self._limits.check_data(data, float(data.time))

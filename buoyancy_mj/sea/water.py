@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import WaterError, describe
-from buoyancy_mj.kernels import waves as kernels
+from buoyancy_mj.kernels import many_places as kernels
 from buoyancy_mj.sea.currents import (
     Current,
     CurrentProfile,
@@ -21,9 +21,11 @@ from buoyancy_mj.sea.dispersion import GRAVITY
 from buoyancy_mj.sea.doppler import add_doppler, describe_change
 from buoyancy_mj.sea.gravity import take_gravity
 from buoyancy_mj.sea.irregular import IrregularSea
+from buoyancy_mj.sea.places import read_places, read_points, read_spots
 from buoyancy_mj.sea.ranges import LARGEST
+from buoyancy_mj.sea.rows import join_equal, rows_of
 from buoyancy_mj.sea.waves import Wave, depends_on_current
-from buoyancy_mj.values import ANY, read_array, set_number
+from buoyancy_mj.values import set_number
 
 MOST_WAVES = 10_000
 """Most waves at once; each costs its time in every step."""
@@ -102,7 +104,7 @@ class Water:
 
     @functools.cached_property
     def _rows(self) -> NDArray[np.float64]:
-        return _join_equal(self._all_rows)
+        return join_equal(self._all_rows)
 
     @functools.cached_property
     def _all_rows(self) -> NDArray[np.float64]:
@@ -119,7 +121,7 @@ class Water:
     def _rows_by_wave(self) -> tuple[NDArray[np.float64], ...]:
         """The rows (n, 7) of each wave."""
         return tuple(
-            add_doppler(_rows_of(seen), self.current, at_rest=not depends_on_current(wave))
+            add_doppler(rows_of(seen), self.current, at_rest=not depends_on_current(wave))
             for wave, seen in zip(self._waves, self._seen, strict=True)
         )
 
@@ -170,74 +172,77 @@ class Water:
             return self
         return dataclasses.replace(self, waves=waves)
 
-    def elevation(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Height of the surface (...) [m], world frame.
+    def elevation(self, x: ArrayLike, y: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
+        """Height of the surface (...) [m], world frame; a float for three numbers.
 
         Args:
-            x: horizontal coordinates of points (any shape) [m], world frame.
-            y: the other horizontal coordinates (the same shape) [m].
-            time: [s].
-        """
-        xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        out = np.empty(xs.size)
-        kernels.elevations(self._rows, xs.ravel(), ys.ravel(), float(time), out)
-        heights: NDArray[np.float64] = self.level + out.reshape(xs.shape)
-        return heights
+            x: horizontal coordinates of points [m], world frame, of any shape that broadcasts with
+                the others.
+            y: the other horizontal coordinates [m], likewise.
+            time: [s], likewise.
 
-    def slope(self, x: ArrayLike, y: ArrayLike, time: float) -> NDArray[np.float64]:
+        Raises:
+            WaterError: shapes that do not broadcast, or a time that is not finite; so in the
+                methods below.
+        """
+        spots = read_spots(x, y, time)
+        out = np.empty(spots.x.size)
+        if len(spots.times) == 1:
+            kernels.elevations(self._rows, spots.x, spots.y, spots.times[0], out)
+        else:
+            kernels.elevations_at(self._rows, *spots[1:], out)
+        return _unwrap(self.level + out.reshape(spots.shape))
+
+    def slope(self, x: ArrayLike, y: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
         """Gradient (..., 2) of the elevation along x and y.
 
         Args:
-            x: horizontal coordinates of points (any shape) [m], world frame.
-            y: the other horizontal coordinates (the same shape) [m].
-            time: [s].
+            x: horizontal coordinates of points [m], world frame, of any shape that broadcasts with
+                the others.
+            y: the other horizontal coordinates [m], likewise.
+            time: [s], likewise.
         """
-        xs, ys = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        out = np.empty((xs.size, 2))
-        kernels.slopes(self._rows, xs.ravel(), ys.ravel(), float(time), out)
-        return out.reshape(*xs.shape, 2)
+        spots = read_spots(x, y, time)
+        out = np.empty((spots.x.size, 2))
+        kernels.slopes(self._rows, *spots[1:], out)
+        return out.reshape(*spots.shape, 2)
 
-    def depth(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Depth (...) [m] of points (..., 3) [m] under the surface at a time [s].
+    def depth(self, points: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
+        """Depth (...) [m] of points (..., 3) [m] under the surface at times (...) [s].
 
-        It is positive in the water.
+        It is positive in the water, and a float for one point at one time.
 
         Raises:
             WaterError: points of another shape; so in the methods below.
         """
-        p = _read_points(points)
-        depths: NDArray[np.float64] = self.elevation(p[..., 0], p[..., 1], time) - p[..., 2]
-        return depths
+        p = read_points(points)
+        return _unwrap(self.elevation(p[..., 0], p[..., 1], time) - p[..., 2])
 
-    def velocity(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Velocity (..., 3) [m/s] of the water at points (..., 3) [m] and a time [s], world frame.
+    def velocity(self, points: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
+        """Velocity (..., 3) [m/s] of the water at points (..., 3) [m] and times (...) [s].
 
-        It is the sum of the current and of the velocities of the waves, see
+        It is the sum of the current and of the velocities of the waves, world frame, see
         `kernels.waves.add_motion`.
         """
-        p = _read_points(points)
-        out = np.empty((p.size // 3, 3))
-        kernels.velocities(
-            self._rows, self._current_rows, p.reshape(-1, 3), self.level, float(time), out
-        )
-        return out.reshape(p.shape)
+        shape, places, times = read_places(points, time)
+        out = np.empty((len(places), 3))
+        kernels.velocities(self._rows, self._current_rows, places, self.level, times, out)
+        return out.reshape(*shape, 3)
 
-    def acceleration(self, points: ArrayLike, time: float) -> NDArray[np.float64]:
-        """Acceleration (..., 3) [m/s^2] of the water at points (..., 3) [m] and a time [s].
+    def acceleration(self, points: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
+        """Acceleration (..., 3) [m/s^2] of the water at points (..., 3) [m] and times (...) [s].
 
         It is that of the water itself as it moves in waves and drifts with the current, which the
         gradient of `pressure` gives: what moves a body with added mass. The part that the shear of
         a profile convects is left out.
         """
-        p = _read_points(points)
-        out = np.empty((p.size // 3, 3))
-        kernels.accelerations(
-            self._rows, self._current_rows, p.reshape(-1, 3), self.level, float(time), out
-        )
-        return out.reshape(p.shape)
+        shape, places, times = read_places(points, time)
+        out = np.empty((len(places), 3))
+        kernels.accelerations(self._rows, self._current_rows, places, self.level, times, out)
+        return out.reshape(*shape, 3)
 
     def pressure(
-        self, points: ArrayLike, time: float, gravity: float = GRAVITY
+        self, points: ArrayLike, time: ArrayLike, gravity: float = GRAVITY
     ) -> NDArray[np.float64]:
         """Pressure (...) [Pa] in excess of the air's at points (..., 3) [m] in the water.
 
@@ -247,49 +252,20 @@ class Water:
 
         Args:
             points: places (..., 3) [m], world frame.
-            time: [s].
+            time: [s], of any shape (...) that broadcasts with the places; a float and one place
+                give a float.
             gravity: acceleration of gravity [m/s^2].
         """
-        p = _read_points(points)
-        out = np.empty(p.size // 3)
-        kernels.heads(self._rows, p.reshape(-1, 3), self.level, float(time), out)
-        return self.density * gravity * out.reshape(p.shape[:-1])
+        shape, places, times = read_places(points, time)
+        out = np.empty(len(places))
+        kernels.heads(self._rows, places, self.level, times, out)
+        return _unwrap(self.density * gravity * out.reshape(shape))
 
 
-def _rows_of(wave: Wave) -> NDArray[np.float64]:
-    """The rows (n, 6) of a wave, which may be of a class of somebody's own."""
-    rows = wave.rows
-    name = f"rows of {describe(wave)}"
-    array = read_array(WaterError, name, rows, (ANY, 6), finite=False)
-    # the depth may be infinite
-    read_array(WaterError, name, array[:, :5], (ANY, 5))
-    if not (array[:, 5] > 0.0).all():
-        raise WaterError(f"{name} hold a depth of {array[:, 5].min():g}; it must be above 0")
-    return array
-
-
-def _join_equal(rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rows (n, 7) of which those that differ in amplitude and phase alone are joined."""
-    others = np.delete(rows, [kernels.AMPLITUDE, kernels.PHASE], axis=1)
-    _, first, which = np.unique(others, axis=0, return_index=True, return_inverse=True)
-    if len(first) == len(rows):
-        return rows
-
-    # A e^(i phase) adds up; in the order in which each first came
-    sums = np.zeros(len(first), complex)
-    turned = rows[:, kernels.AMPLITUDE] * np.exp(1j * rows[:, kernels.PHASE])
-    np.add.at(sums, which.ravel(), turned)
-    joined = rows[first]
-    joined[:, kernels.AMPLITUDE], joined[:, kernels.PHASE] = np.abs(sums), np.angle(sums)
-    order = np.argsort(first)
-    in_order: NDArray[np.float64] = np.ascontiguousarray(joined[order])
-    return in_order
-
-
-def _read_points(points: ArrayLike) -> NDArray[np.float64]:
-    """Points (..., 3) as floats; nan stays nan, as of a hull that is dry."""
-    shape = (*[ANY] * (np.ndim(points) - 1), 3)
-    return read_array(WaterError, "points", points, shape, finite=False)
+def _unwrap(array: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same array; an array without axes as the float that it holds."""
+    unwrapped: NDArray[np.float64] = array[()]
+    return unwrapped
 
 
 def _read_only(array: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,6 +1,6 @@
 """How the Rerun viewer is laid out for a run and for an inspection."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import rerun.blueprint as rrb
@@ -8,9 +8,22 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.viz.plots import TIMELINE, list_plots
 
+MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
+"""Names of the tabs of plots."""
+MOST_IN_COLUMN = 6
+"""Most plots of instruments that stand in one column."""
+MOST_IN_LEGEND = 4
+"""Most lines of instruments that a legend names; more would cover the lines."""
+
 
 def run_blueprint(
-    title: str, look_at: NDArray[np.float64], size: float, vehicles: Sequence[str] = ()
+    title: str,
+    look_at: NDArray[np.float64],
+    size: float,
+    *,
+    texts: Sequence[str],
+    vehicles: Sequence[str],
+    instruments: Mapping[str, Sequence[str]],
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
@@ -18,19 +31,24 @@ def run_blueprint(
         title: name of the view of the world.
         look_at: point at which it looks (3,) [m].
         size: length of what it shows [m], a few of which lie between the eye and that point.
+        texts: entities of the texts.
         vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
+        instruments: entities of each plot of sensors and actuators, by its title; they have a tab
+            of their own.
     """
     world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
-    texts = rrb.Tabs(
-        rrb.TextDocumentView(origin="summary", name="summary"),
-        rrb.TextDocumentView(origin="scene", name="scene"),
-    )
-    plots: rrb.Container = rrb.Vertical(*_plot_views())
-    if vehicles:
-        plots = rrb.Tabs(*(rrb.Vertical(*_plot_views(name), name=name) for name in vehicles))
+    below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
+    tabs = [rrb.Vertical(*_plot_views(name), name=name) for name in vehicles]
+    if not tabs:
+        tabs = [rrb.Vertical(*_plot_views(), name=MOTION)]
+    if instruments:
+        views = [_instrument_view(title, paths) for title, paths in instruments.items()]
+        columns = 1 if len(views) <= MOST_IN_COLUMN else 2
+        tabs.append(rrb.Grid(*views, grid_columns=columns, name=INSTRUMENTS))
+    plots = rrb.Tabs(*tabs) if len(tabs) > 1 else tabs[0]
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(world, texts, row_shares=[4, 1]),
+            rrb.Vertical(world, below, row_shares=[4, 1]),
             plots,
             column_shares=[3, 2],
         ),
@@ -87,7 +105,22 @@ def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
         contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
         name=title,
         # a legend of all hulls would cover their lines
-        plot_legend=rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=not has_hulls),
+        plot_legend=_legend(visible=not has_hulls),
+    )
+
+
+def _legend(*, visible: bool) -> rrb.PlotLegend:
+    """The legend of a plot, where lines are covered least."""
+    return rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=visible)
+
+
+def _instrument_view(title: str, paths: Sequence[str]) -> rrb.TimeSeriesView:
+    """A plot of numbers of one kind and unit."""
+    return rrb.TimeSeriesView(
+        origin="instruments",
+        contents=[f"+ {path}" for path in paths],
+        name=title,
+        plot_legend=_legend(visible=len(paths) <= MOST_IN_LEGEND),
     )
 
 

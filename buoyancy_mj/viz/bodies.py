@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame
-from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.submersion.wetted_surface import cut_wetted_surface
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
@@ -21,18 +21,18 @@ class BodyDrawing:
     """The bodies of a run.
 
     Args:
-        simulation: the run.
+        run: the run.
         size: length of the vehicle [m].
     """
 
-    def __init__(self, simulation: Simulation, size: float) -> None:
+    def __init__(self, run: Run, size: float) -> None:
         self.wet: dict[int, NDArray[np.bool_]] = {}
         """Which vertices (n,) of each moving geom are wet, by its index, as last drawn."""
-        self._simulation = simulation
+        self._run = run
         self._size = size
-        self._geoms = list(find_visible_geoms(simulation.model))
+        self._geoms = list(find_visible_geoms(run.model))
         self._moving = [geom for geom in self._geoms if geom.moves]
-        self._foils = list(find_visible_foils(simulation.model))
+        self._foils = list(find_visible_foils(run.model))
 
     def draw_static(self, log: Log) -> None:
         """Draw all geoms, and foils that are sites, in the frames of their bodies."""
@@ -94,7 +94,7 @@ class BodyDrawing:
 
     def _uncut_hulls(self, frame: Frame) -> dict[int, bool]:
         """Whether each geom that the surface does not cut is wet, by its index."""
-        hulls = self._simulation.buoyancy.hulls
+        hulls = self._run.buoyancy.hulls
         loads = frame.loads
         return {
             hull.geom: bool(volume > 0.0)
@@ -108,14 +108,14 @@ class BodyDrawing:
         """Which vertices (n,) of a geom are under water."""
         world_from_geom = frame.data.geom_xmat[geom.geom].reshape(3, 3)
         points = geom.vertices @ world_from_geom.T + frame.data.geom_xpos[geom.geom]
-        wet: NDArray[np.bool_] = self._simulation.buoyancy.water.depth(points, frame.time) > 0.0
+        wet: NDArray[np.bool_] = self._run.buoyancy.water.depth(points, frame.time) > 0.0
         return wet
 
     def _draw_waterline(self, log: Log, frame: Frame) -> None:
         """Draw the waterline on all hulls that the surface cuts."""
         data = frame.data
-        water = self._simulation.buoyancy.water
-        hulls = self._simulation.buoyancy.hulls
+        water = self._run.buoyancy.water
+        hulls = self._run.buoyancy.hulls
         lines = [
             cut_wetted_surface(
                 hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time
@@ -132,9 +132,9 @@ class BodyDrawing:
         """The entity of a body."""
         if body == 0:
             return "world/environment"
-        return f"world/bodies/{rr.escape_entity_path_part(body_name(self._simulation.model, body))}"
+        return f"world/bodies/{rr.escape_entity_path_part(body_name(self._run.model, body))}"
 
     def _geom_entity(self, geom: VisibleGeom) -> str:
         """The entity of a geom."""
-        name = geom_name(self._simulation.model, geom.geom)
+        name = geom_name(self._run.model, geom.geom)
         return f"{self._body_entity(geom.body)}/{rr.escape_entity_path_part(name)}"

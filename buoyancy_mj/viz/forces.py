@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
+from buoyancy_mj.viz.framing import arrow_scale
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL
 
@@ -40,12 +41,12 @@ def draw_forces(log: Log, vehicle: Vehicle, frame: Frame, name: str = "") -> Non
         frame: the instant.
         name: what tells the vehicle from others; '' for the only one.
     """
-    size, weight = vehicle.length, vehicle.weight
+    size = vehicle.length
     seen = frame.vehicles[vehicle.name]
     centre = seen.centre_of_mass
     origin = seen.centre_of_buoyancy if seen.volume > 0.0 else centre
-    scale = 0.5 * size / weight if weight > 0.0 else 0.0
-    down = np.array([0.0, 0.0, -weight])
+    scale = arrow_scale([vehicle], vehicle.root)
+    down = np.array([0.0, 0.0, -vehicle.weight])
     _draw_arrow(log, _entity("forces", name, "weight"), centre, scale * down, size)
     for cause, force in seen.forces.items():
         _draw_arrow(log, _entity("forces", name, cause), origin, scale * force, size)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.run import Run
 
 
 def find_middle(centres: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
@@ -27,9 +27,21 @@ def measure_extent(vehicles: Iterable[Vehicle], data: mujoco.MjData) -> float:
     )
 
 
-def place_at_start(simulation: Simulation) -> mujoco.MjData:
-    """Data with the poses of a simulation as it stands, without a step of its own."""
-    data = mujoco.MjData(simulation.model)
-    data.qpos[:] = simulation.data.qpos
-    mujoco.mj_kinematics(simulation.model, data)
+def place_at_start(run: Run) -> mujoco.MjData:
+    """Data with the poses of a run as it stands, without a step of its own."""
+    data = mujoco.MjData(run.model)
+    data.qpos[:] = run.data.qpos
+    mujoco.mj_kinematics(run.model, data)
     return data
+
+
+def arrow_scale(vehicles: Iterable[Vehicle], body: int) -> float:
+    """Length of an arrow over its force [m/N], for a force on a body.
+
+    The weight of a vehicle is half as long as the vehicle. On what is no part of a vehicle, the
+    arrow is on the scale of the first vehicle that weighs something.
+    """
+    weighing = [vehicle for vehicle in vehicles if vehicle.weight > 0.0]
+    for vehicle in sorted(weighing, key=lambda one: body not in one.bodies):
+        return 0.5 * vehicle.length / vehicle.weight
+    return 0.0

@@ -100,7 +100,7 @@ def values(vehicle: Vehicle, frame: Frame) -> dict[Line, float]:
 def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesLines]:
     """The style of each line, for the names of loads and of hulls."""
     colours: dict[Line, Colour] = {
-        ("volume", "hulls", name): _hue(i) for i, name in enumerate(hulls)
+        ("volume", "hulls", name): hue(i) for i, name in enumerate(hulls)
     }
     colours |= {("force", cause): COLOURS.get(cause, NEUTRAL) for cause in ("weight", *causes)}
     colours |= _LINES
@@ -110,7 +110,7 @@ def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesL
     }
 
 
-def _hue(i: int) -> Colour:
+def hue(i: int) -> Colour:
     """The i-th of many colours, far from its neighbours: steps of the golden ratio in hue."""
     hsv = np.array([[0.61803 * i % 1.0, 0.5, 0.9]])
     red, green, blue, _ = trimesh.visual.color.hsv_to_rgba(hsv)[0].tolist()

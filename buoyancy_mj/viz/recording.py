@@ -1,6 +1,5 @@
 """`Recording`: a run as Rerun data, in a file, in a live viewer, or in both."""
 
-import contextlib
 import os
 import sys
 import uuid
@@ -15,14 +14,18 @@ import rerun as rr
 from buoyancy_mj.errors import BuoyancyWarning, RecordingError
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
-from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.scenes.summary import Summary
-from buoyancy_mj.viz import plots
+from buoyancy_mj.vehicle.instruments import Instruments
+from buoyancy_mj.viz import instruments, plots
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
+from buoyancy_mj.viz.contacts import ContactDrawing
 from buoyancy_mj.viz.forces import draw_centres, draw_forces
 from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
 from buoyancy_mj.viz.rrd import RrdFile
+from buoyancy_mj.viz.tendons import TendonDrawing
+from buoyancy_mj.viz.thrusters import ThrusterDrawing
 from buoyancy_mj.viz.water_surface import SurfaceDrawing
 
 FLUSH_EVERY = 0.25
@@ -40,19 +43,26 @@ class Recording:
     `close` returns.
 
     Args:
-        simulation: the run, for its model and scene.
+        run: the run: a `Simulation`, or a loop of somebody's own.
         path: the file; None for none.
         live: whether to stream to a Rerun viewer, which is started if none runs.
+        has_summary: whether `close` will be given a summary.
 
     Raises:
         RecordingError: the file cannot be written, or no viewer could be started.
     """
 
     def __init__(
-        self, simulation: Simulation, path: Path | None = None, *, live: bool = False
+        self,
+        run: Run,
+        path: Path | None = None,
+        *,
+        live: bool = False,
+        has_summary: bool = True,
     ) -> None:
-        self.simulation = simulation
+        self.run = run
         """The run."""
+        self._texts = ("summary", "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
         self._streams: list[rr.RecordingStream] = []
@@ -73,22 +83,30 @@ class Recording:
 
     def _begin(self) -> None:
         """Draw what stays the same, and be ready for frames."""
-        simulation = self.simulation
+        run = self.run
         self._times: list[float] = []
         self._lines: dict[str, list[float]] = {}
-        vehicles = simulation.vehicles.values()
-        self._several = list(simulation.vehicles) if len(vehicles) > 1 else []
-        self._start = place_at_start(simulation)
+        vehicles = run.vehicles.values()
+        self._several = list(run.vehicles) if len(vehicles) > 1 else []
+        self._start = place_at_start(run)
         self._size = measure_extent(vehicles, self._start)
-        self._bodies = BodyDrawing(simulation, max(vehicle.length for vehicle in vehicles))
-        self._surface = SurfaceDrawing(simulation.buoyancy.water, self._size)
+        length = max(vehicle.length for vehicle in vehicles)
+        self._bodies = BodyDrawing(run, length)
+        self._surface = SurfaceDrawing(run.buoyancy.water, self._size)
+        self._thrusters = ThrusterDrawing(run, length)
+        self._tendons = TendonDrawing(run.model)
+        self._contacts = ContactDrawing(run, length)
+        self._instruments = Instruments(run.model)
+        self._entities = [instruments.entity(one) for one in self._instruments.channels]
         self._draw_static()
 
     def __del__(self) -> None:
         # a stream that is dropped with data still in it may wait for ever
         for stream in getattr(self, "_streams", ()):
-            with contextlib.suppress(Exception):
+            try:  # noqa: SIM105 - contextlib may be gone at the end of the interpreter
                 stream.flush(timeout_sec=5.0)
+            except Exception:
+                pass
 
     @property
     def closed(self) -> bool:
@@ -110,12 +128,17 @@ class Recording:
         for vehicle, name in self._vehicles():
             draw_centres(self._log, vehicle, frame, name)
             draw_forces(self._log, vehicle, frame, name)
+        for drawing in (self._thrusters, self._tendons, self._contacts):
+            drawing.draw(self._log, frame)
 
         # the plots, as columns of many frames
         self._times.append(frame.time)
         for vehicle, name in self._vehicles():
             for line, value in plots.values(vehicle, frame).items():
                 self._lines.setdefault(plots.entity(line, name), []).append(value)
+        readings = self._instruments.read(frame.data).tolist()
+        for entity, value in zip(self._entities, readings, strict=True):
+            self._lines.setdefault(entity, []).append(value)
         if self._times[-1] - self._times[0] >= FLUSH_EVERY:
             self._send_lines()
             self._write()
@@ -149,34 +172,44 @@ class Recording:
 
     def _draw_static(self) -> None:
         """Draw what stays the same in all frames."""
-        scene = self.simulation.scene
-        vehicles = self.simulation.vehicles.values()
+        run, channels = self.run, self._instruments.channels
+        vehicles = run.vehicles.values()
         middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
         # at the surface over the vehicles, or under it where they are deep
         reach = 0.5 * self._size
-        height = np.clip(scene.water.level, middle[2] - reach, middle[2] + reach)
+        height = np.clip(run.buoyancy.water.level, middle[2] - reach, middle[2] + reach)
         look_at = np.array([*middle[:2], height])
         # vehicles apart from each other fill less of the picture than one
         size = CLOSER * self._size if self._several else self._size
-        layout = run_blueprint(scene.title, look_at, size, self._several)
+        layout = run_blueprint(
+            run.title,
+            look_at,
+            size,
+            texts=self._texts,
+            vehicles=self._several,
+            instruments=instruments.list_plots(channels),
+        )
         for stream in self._streams:
             stream.send_blueprint(layout)
         self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        self._log_text("scene", f"```toml\n{scene.text}\n```")
+        self._log_text("scene", f"```toml\n{run.text}\n```")
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
+        self._thrusters.draw_static(self._log)
 
         # the style of each line
-        causes = self.simulation.buoyancy.causes
+        causes = run.buoyancy.causes
         for vehicle, name in self._vehicles():
             styles = plots.styles(causes, [hull.name for hull in vehicle.hulls])
             for line, style in styles.items():
                 self._log(plots.entity(line, name), style, static=True)
+        for entity, style in instruments.styles(channels).items():
+            self._log(entity, style, static=True)
         self._write()
 
     def _vehicles(self) -> Iterator[tuple[Vehicle, str]]:
         """Each vehicle, and what tells it from others: '' for the only one."""
-        for name, vehicle in self.simulation.vehicles.items():
+        for name, vehicle in self.run.vehicles.items():
             yield vehicle, name if self._several else ""
 
     def _log(self, entity: str, *data: Any, static: bool = False) -> None:

@@ -20,7 +20,7 @@ from pathlib import Path
 import rerun as rr
 
 from buoyancy_mj.errors import RecordingError
-from buoyancy_mj.files import open_partial
+from buoyancy_mj.files import GrowingFile
 
 _HEADER_SIZE = 12
 _MESSAGE = struct.Struct("<QQ")
@@ -44,24 +44,8 @@ class RrdFile:
     """
 
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
-        self.path = path
-        """The name of the whole file."""
-        self.partial: Path
-        """The name under which it grows."""
-        self.closed = False
-        """Whether the file has its name already, or was discarded."""
-        self._written = 0
-        if path.is_dir():
-            raise RecordingError(
-                f"cannot write '{path}': it is a folder; choose another place (--record)"
-            )
-        if path.exists() and not path.is_file():
-            raise RecordingError(
-                f"cannot write '{path}': it is no regular file; choose another place (--record)"
-            )
         try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            self._descriptor, self.partial = open_partial(path)
+            self._file = GrowingFile(path)
         except BlockingIOError as error:
             raise RecordingError(
                 f"another run is writing '{error.filename}'; choose another place (--record)"
@@ -72,6 +56,11 @@ class RrdFile:
             ) from error
         self._stream = stream.binary_stream()
 
+    @property
+    def closed(self) -> bool:
+        """Whether the file has its name already, or was discarded."""
+        return self._file.closed
+
     def write(self) -> None:
         """Append what has been logged since the last call.
 
@@ -80,14 +69,9 @@ class RrdFile:
         """
         chunk = self._stream.read() or b""
         try:
-            for message in _split(chunk, with_header=self._written == 0):
-                rest = message
-                while rest:
-                    rest = rest[os.write(self._descriptor, rest) :]
-                self._written += len(message)
+            for message in _split(chunk, with_header=self._file.size == 0):
+                self._file.append(message)
         except OSError as error:
-            with contextlib.suppress(OSError):
-                os.ftruncate(self._descriptor, self._written)
             path = self.close(complete=False)
             raise RecordingError(
                 f"the recording broke off: {error.strerror}; what was written is in '{path}'"
@@ -107,10 +91,9 @@ class RrdFile:
         Raises:
             RecordingError: it cannot take its name.
         """
-        os.close(self._descriptor)
-        self.closed = True
+        self._file.close()
         try:
-            _add_footer(self.partial)
+            _add_footer(self._file.partial)
         finally:
             # also when a second Ctrl-C finds that a footer takes too long
             left = self._take_name(complete=complete)
@@ -118,22 +101,17 @@ class RrdFile:
 
     def discard(self) -> None:
         """Remove the file of a recording that never began."""
-        os.close(self._descriptor)
-        self.closed = True
-        self.partial.unlink(missing_ok=True)
+        self._file.discard()
 
     def _take_name(self, *, complete: bool) -> Path:
         """Give the file its name, but for an incomplete one in whose place another is."""
-        if not complete and os.path.lexists(self.path):
-            return self.partial
         try:
-            os.replace(self.partial, self.path)
+            return self._file.take_name(complete=complete)
         except OSError as error:
             raise RecordingError(
-                f"cannot write '{self.path}': {error.strerror}; "
-                f"the recording is in '{self.partial}'"
+                f"cannot write '{self._file.path}': {error.strerror}; "
+                f"the recording is in '{self._file.partial}'"
             ) from error
-        return self.path
 
 
 def _split(chunk: bytes, *, with_header: bool) -> Iterator[memoryview]:

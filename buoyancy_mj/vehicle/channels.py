@@ -1,0 +1,71 @@
+"""`describe_sensor`: a name and a unit for each number of a sensor, ours and the engine's."""
+
+from collections.abc import Mapping
+
+import mujoco
+
+from buoyancy_mj.engine.instances import plugin_name
+from buoyancy_mj.vehicle.engine_sensors import (
+    Component,
+    one,
+    read_components,
+    repeat_components,
+    vector,
+)
+
+NAMES_AND_UNITS: Mapping[str, tuple[Component, ...]] = {
+    "buoyancy_mj.pressure": one("Pa"),
+    "buoyancy_mj.depth": one("m"),
+    "buoyancy_mj.elevation": one("m"),
+    "buoyancy_mj.wet": one(""),
+    "buoyancy_mj.water_velocity": vector("m/s"),
+    "buoyancy_mj.speed_through_water": vector("m/s"),
+    "buoyancy_mj.dvl": (
+        *vector("m/s"),
+        Component("valid_beams", ""),
+        *(Component(f"range_{beam}", "m") for beam in range(1, 5)),
+    ),
+    "buoyancy_mj.altimeter": one("m"),
+    "buoyancy_mj.hydrophone": (
+        Component("range", "m"),
+        Component("bearing", "rad"),
+        Component("elevation", "rad"),
+    ),
+}
+"""What the sensors of this package read, by the name of their plugin."""
+
+
+def describe_sensor(model: mujoco.MjModel, sensor: int) -> list[Component]:
+    """Name and unit of each number of a sensor, in the order of `sensordata`.
+
+    Args:
+        model: the model.
+        sensor: index of the sensor.
+
+    Returns:
+        A pair of name and unit for each number; the name is '' for the only one. What nobody says
+        a name or a unit of, as the sensors of other plugins, is numbered from 1 and has no unit.
+    """
+    known = read_components(model, sensor)
+    if known is None:
+        known = NAMES_AND_UNITS.get(_plugin_name(model, sensor))
+    dim = int(model.sensor_dim[sensor])
+    if known is None or len(known) < dim:
+        known = repeat_components(one(""), dim)
+    return list(known[:dim])
+
+
+def sensor_name(model: mujoco.MjModel, sensor: int) -> str:
+    """The sensor's own name, or 'sensor INDEX'."""
+    return str(model.sensor(sensor).name) or f"sensor {sensor}"
+
+
+def actuator_name(model: mujoco.MjModel, actuator: int) -> str:
+    """The actuator's own name, or 'actuator INDEX'."""
+    return str(model.actuator(actuator).name) or f"actuator {actuator}"
+
+
+def _plugin_name(model: mujoco.MjModel, sensor: int) -> str:
+    """The name of the plugin that fills a sensor; '' for none."""
+    instance = int(model.sensor_plugin[sensor])
+    return plugin_name(model, instance) if instance >= 0 else ""
