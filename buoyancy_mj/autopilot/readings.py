@@ -123,7 +123,9 @@ class Readings:
             position=_plain(position),
             attitude=_plain(quaternion),
             velocity=_plain(velocity * HALF_TURN),
-            distances=tuple(d if d >= 0.0 else FAR for d in data.sensordata[self._finders].tolist()),
+            distances=tuple(
+                d if d >= 0.0 else FAR for d in data.sensordata[self._finders].tolist()
+            ),
         )
 
 

@@ -23,7 +23,7 @@ from buoyancy_mj.cli.flags import (
     SelectionFlags,
     check_recording_name,
 )
-from buoyancy_mj.cli.recordings import Recordings
+from buoyancy_mj.cli.recordings import Recordings, StreamFlags
 from buoyancy_mj.cli.summaries import print_openers, summary_json, summary_table
 from buoyancy_mj.errors import AutopilotError, choices
 from buoyancy_mj.scenes import catalog
@@ -85,6 +85,7 @@ def sitl(
     flags: SceneFlags,
     selection: SelectionFlags,
     autopilot: AutopilotFlags,
+    streams: StreamFlags,
     record: Annotated[Path | None, typer.Option(help="Record to this file.")] = None,
     live: Annotated[
         bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
@@ -112,8 +113,13 @@ def sitl(
                 packet = _wait(link, autopilot)
             else:
                 print_line(err, "the autopilot has started anew, and so does the scene")
-            target = number_recording(record, starts)
-            packet = _fly(session, link, packet, autopilot, target, live=live, as_json=as_json)
+            recordings = Recordings(
+                session.simulation,
+                number_recording(record, starts),
+                live=live,
+                streams=dataclasses.replace(streams, mcap=number_recording(streams.mcap, starts)),
+            )
+            packet = _fly(session, link, packet, autopilot, recordings, as_json=as_json)
 
 
 def _read_plan(
@@ -190,13 +196,11 @@ def _fly(
     link: Link,
     packet: Servos,
     autopilot: AutopilotFlags,
-    target: Path | None,
+    recordings: Recordings,
     *,
-    live: bool,
     as_json: bool,
 ) -> Servos | None:
     """Run until the autopilot is silent or starts anew, and sum up; the packet of its new start."""
-    recordings = Recordings(session.simulation, target, live=live)
     stop: KeyboardInterrupt | None = None
     try:
         try:

@@ -18,7 +18,7 @@ from buoyancy_mj.cli.flags import (
     SelectionFlags,
     check_recording_name,
 )
-from buoyancy_mj.cli.recordings import Recordings
+from buoyancy_mj.cli.recordings import Recordings, StreamFlags
 from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.cli.summaries import print_openers, summary_json, summary_table
 from buoyancy_mj.errors import SceneError
@@ -33,6 +33,7 @@ def run(
     scene: SceneArgument,
     flags: RunFlags,
     selection: SelectionFlags,
+    streams: StreamFlags,
     record: Annotated[
         Path | None, typer.Option(help="Record to this file instead of recordings/NAME.rrd.")
     ] = None,
@@ -64,7 +65,8 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    paths = _run_to_end(simulation, Recordings(simulation, target, live=live))
+    recordings = Recordings(simulation, target, live=live, streams=streams, paced=True)
+    paths = _run_to_end(simulation, recordings)
 
     # its summary
     summary = simulation.summary()
@@ -101,6 +103,7 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
 def _run_to_end(simulation: Simulation, recordings: Recordings) -> list[Path]:
     """Run to the end, and record; the files."""
     try:
+        recordings.wait_for_viewer()
         _run_frames(simulation, recordings.add)
         return recordings.close(simulation.summary())
     except BaseException:

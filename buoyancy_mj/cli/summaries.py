@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.table import Table
 
-from buoyancy_mj.cli.console import out, print_line, viewer_command
+from buoyancy_mj.cli.console import out, print_line, quote_path, viewer_command
 from buoyancy_mj.scenes.summary import Summary
 
 
@@ -41,8 +41,8 @@ def summary_json(
     if len(summary.vehicles) > 1:
         # a table for each vehicle, in place of names with dots
         values = dataclasses.asdict(summary)
-    recording = next((path for path in paths if path.suffix == ".rrd"), None)
-    values |= {"recording": str(recording) if recording else None, **(others or {})}
+    files = {path.suffix: str(path) for path in paths}
+    values |= {"recording": files.get(".rrd"), "mcap": files.get(".mcap"), **(others or {})}
     return json.dumps(_drop_infinite(values), indent=2)
 
 
@@ -51,6 +51,8 @@ def print_openers(paths: Sequence[Path]) -> None:
     for path in paths:
         if path.suffix == ".rrd":
             print_line(out, f"open the recording: {viewer_command(path)}")
+        else:
+            print_line(out, f"written: {quote_path(path)}")
 
 
 def _drop_infinite(value: Any) -> Any:
