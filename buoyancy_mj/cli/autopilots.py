@@ -22,9 +22,10 @@ from buoyancy_mj.cli.flags import (
     SceneFlags,
     SelectionFlags,
     check_recording_name,
+    check_table_name,
 )
-from buoyancy_mj.cli.recordings import Recordings, StreamFlags
-from buoyancy_mj.cli.summaries import print_openers, summary_json, summary_table
+from buoyancy_mj.cli.recordings import Files, Recordings, StreamFlags
+from buoyancy_mj.cli.summaries import print_files, summary_json, summary_table
 from buoyancy_mj.errors import AutopilotError, choices
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.fleet import Vehicle
@@ -87,6 +88,10 @@ def sitl(
     autopilot: AutopilotFlags,
     streams: StreamFlags,
     record: Annotated[Path | None, typer.Option(help="Record to this file.")] = None,
+    series: Annotated[
+        Path | None,
+        typer.Option(help="Write a row for each frame into this .csv or .parquet as well."),
+    ] = None,
     live: Annotated[
         bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
     ] = False,
@@ -97,6 +102,7 @@ def sitl(
     Of several vehicles in the scene, --vehicle names the one that is driven.
     """
     check_recording_name(record)
+    check_table_name(series)
     if autopilot.frame not in MOTOR_FRAMES:
         raise AutopilotError(
             f"unknown frame '{autopilot.frame}'; {choices(autopilot.frame, MOTOR_FRAMES)}"
@@ -116,6 +122,7 @@ def sitl(
             recordings = Recordings(
                 session.simulation,
                 number_recording(record, starts),
+                number_recording(series, starts),
                 live=live,
                 streams=dataclasses.replace(streams, mcap=number_recording(streams.mcap, starts)),
             )
@@ -214,19 +221,19 @@ def _fly(
         except KeyboardInterrupt as interrupt:
             # the usual end of a session
             stop, packet_of_next = interrupt, None
-        paths = recordings.close(session.summary())
+        files = recordings.close(session.summary())
     except BaseException:
         recordings.keep(session.summary)
         raise
     if packet_of_next is None and stop is None and not session.is_over(autopilot.until):
         print_line(err, f"the autopilot has been silent for {autopilot.timeout:g} s")
-    _sum_up(session, link, paths, as_json=as_json)
+    _sum_up(session, link, files, as_json=as_json)
     if stop is not None:
         raise stop
     return packet_of_next
 
 
-def _sum_up(session: Session, link: Link, paths: list[Path], *, as_json: bool) -> None:
+def _sum_up(session: Session, link: Link, files: Files, *, as_json: bool) -> None:
     """Print the summary of a session."""
     counts = {
         "frames": session.frames,
@@ -236,7 +243,7 @@ def _sum_up(session: Session, link: Link, paths: list[Path], *, as_json: bool) -
         "malformed_packets": link.malformed,
     }
     if as_json:
-        typer.echo(summary_json(session.summary(), paths, {"autopilot": counts}))
+        typer.echo(summary_json(session.summary(), files, {"autopilot": counts}))
         return
     table = summary_table(session.summary())
     several = len(session.simulation.vehicles) > 1
@@ -246,7 +253,7 @@ def _sum_up(session: Session, link: Link, paths: list[Path], *, as_json: bool) -
     out.print(table)
     if several:
         print_line(out, ", ".join(f"{name.replace('_', ' ')} {n}" for name, n in counts.items()))
-    print_openers(paths)
+    print_files(files)
 
 
 def number_recording(path: Path | None, start: int) -> Path | None:

@@ -16,6 +16,7 @@ from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.records import field_docs
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import Scene
+from buoyancy_mj.scenes.series_file import ENDS
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.settings.texts import parse_toml
 from buoyancy_mj.settings.toml import water_from_table
@@ -111,6 +112,16 @@ def check_recording_name(path: Path | None) -> None:
     """
     if path is not None and path.suffix != ".rrd":
         raise SceneError(f"--record is '{path}'; a recording's name ends in .rrd")
+
+
+def check_table_name(path: Path | None) -> None:
+    """Check that the name of a series, if there is one, says what kind of table it is.
+
+    Raises:
+        SceneError: it does not.
+    """
+    if path is not None and path.suffix not in ENDS:
+        raise SceneError(f"--series is '{path}'; a series' name ends in {' or '.join(ENDS)}")
 
 
 def parse_still_water(settings: list[str] | None) -> Water:

@@ -1,9 +1,9 @@
 """Recordings of a run: opened together, kept whatever ends it, and closed together."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Protocol
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
@@ -12,6 +12,7 @@ from buoyancy_mj.errors import RecordingError, SceneError
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.summary import Summary
+from buoyancy_mj.viz.sinks import open_sinks
 
 if TYPE_CHECKING:
     from buoyancy_mj.viz.ros.stream import RosStream
@@ -60,38 +61,37 @@ class StreamFlags:
         return RosStream(simulation, self.mcap, port=port, paced=paced)
 
 
-class Sink(Protocol):
-    """What takes the frames of a run: a file, a viewer, or both."""
+class Files(NamedTuple):
+    """What a run has left; None for what was not asked for."""
 
-    @property
-    def closed(self) -> bool:
-        """Whether it takes no more."""
-
-    def add(self, frame: Frame) -> None:
-        """Take one frame."""
-
-    def close(self, summary: Summary | None = None, *, complete: bool = True) -> Path | None:
-        """Take no more; where its file is, None without one."""
+    recording: Path | None = None
+    """The recording for Rerun."""
+    series: Path | None = None
+    """The table."""
+    mcap: Path | None = None
+    """The messages of ROS 2."""
 
 
 class Recordings:
-    """The recordings of one run.
+    """All that the frames of one run go to: opened together, and closed together.
 
     Args:
         simulation: the run.
         record: the file for Rerun; None for none.
+        series: the table; None for none.
         live: whether to stream to a Rerun viewer.
         streams: where the run goes as messages of ROS 2.
         paced: whether a Foxglove viewer sees no more than real time.
 
     Raises:
-        RecordingError: one cannot be made; those before it are gone.
+        RecordingError: one cannot be made; nothing of the others stays.
     """
 
     def __init__(
         self,
         simulation: Simulation,
-        record: Path | None,
+        record: Path | None = None,
+        series: Path | None = None,
         *,
         live: bool = False,
         streams: StreamFlags,
@@ -99,17 +99,20 @@ class Recordings:
     ) -> None:
         self._simulation = simulation
         self._stream = streams.open(simulation, paced=paced)
-        self._sinks: list[Sink] = [] if self._stream is None else [self._stream]
-        if record is not None or live:
-            from buoyancy_mj.viz.recording import Recording  # needs Rerun, which takes time
+        try:
+            self._recording, self._series = open_sinks(simulation, record, series, live=live)
+        except BaseException:
+            if self._stream is not None:
+                self._stream.discard()
+            raise
+        if self._stream is not None and self._stream.port is not None:
+            place = f"ws://{self._stream.host}:{self._stream.port}"
+            print_line(err, f"open {place} in Foxglove, as a Foxglove WebSocket")
+        sinks = (self._recording, self._series, self._stream)
+        self._adders = [sink.add for sink in sinks if sink is not None]
 
-            try:
-                self._sinks.append(Recording(simulation, record, live=live))
-            except BaseException:
-                if self._stream is not None:
-                    self._stream.discard()
-                raise
-        self._announce()
+    def __bool__(self) -> bool:
+        return bool(self._adders)
 
     def wait_for_viewer(self) -> None:
         """Wait for a Foxglove viewer, if there is a server for one."""
@@ -117,45 +120,44 @@ class Recordings:
             print_line(err, "waiting for a viewer")
             self._stream.wait_for_viewer()
 
-    def __bool__(self) -> bool:
-        return bool(self._sinks)
-
     def add(self, frame: Frame) -> None:
         """Record one frame.
 
         Raises:
             RecordingError: one cannot be written to its end; what was written stays.
         """
-        for sink in self._sinks:
-            sink.add(frame)
+        for add in self._adders:
+            add(frame)
 
-    def close(self, summary: Summary) -> list[Path]:
-        """Close all after a whole run; their files.
+    def close(self, summary: Summary) -> Files:
+        """Close all after a whole run, and say where they are.
 
         Raises:
             RecordingError: the last data could not be written.
         """
-        paths = [sink.close(summary) for sink in self._open()]
-        return [path for path in paths if path is not None]
+        return Files(
+            self._recording.close(summary) if self._recording is not None else None,
+            self._series.close() if self._series is not None else None,
+            self._stream.close(summary) if self._stream is not None else None,
+        )
 
     def keep(self, summary: Callable[[], Summary]) -> None:
         """Close all after a run that broke off, and say where they are."""
-        for sink in self._open():
-            try:
-                partial = sink.close(summary(), complete=False)
-            except RecordingError as error:
-                print_line(err, f"note: {error}", style="yellow")
-            else:
-                if partial is not None:
-                    time = self._simulation.data.time
-                    print_line(err, f"the recording up to {time:.2f} s is in '{partial}'")
+        recording, series, stream = self._recording, self._series, self._stream
+        if recording is not None and not recording.closed:
+            self._keep("recording", lambda: recording.close(summary(), complete=False))
+        if series is not None and not series.closed:
+            self._keep("series", lambda: series.close(complete=False))
+        if stream is not None and not stream.closed:
+            self._keep("MCAP file", lambda: stream.close(complete=False))
 
-    def _announce(self) -> None:
-        """Say where a Foxglove viewer finds the run."""
-        if self._stream is not None and self._stream.port is not None:
-            place = f"ws://{self._stream.host}:{self._stream.port}"
-            print_line(err, f"open {place} in Foxglove, as a Foxglove WebSocket")
-
-    def _open(self) -> Sequence[Sink]:
-        """Those that are not closed."""
-        return [sink for sink in self._sinks if not sink.closed]
+    def _keep(self, what: str, close: Callable[[], Path | None]) -> None:
+        """Close something that broke off, and say where it is."""
+        try:
+            partial = close()
+        except RecordingError as error:
+            print_line(err, f"note: {error}", style="yellow")
+        else:
+            if partial is not None:
+                time = self._simulation.data.time
+                print_line(err, f"the {what} up to {time:.2f} s is in '{partial}'")

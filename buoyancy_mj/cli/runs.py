@@ -17,10 +17,11 @@ from buoyancy_mj.cli.flags import (
     SceneFlags,
     SelectionFlags,
     check_recording_name,
+    check_table_name,
 )
-from buoyancy_mj.cli.recordings import Recordings, StreamFlags
+from buoyancy_mj.cli.recordings import Files, Recordings, StreamFlags
 from buoyancy_mj.cli.signals import raise_received
-from buoyancy_mj.cli.summaries import print_openers, summary_json, summary_table
+from buoyancy_mj.cli.summaries import print_files, summary_json, summary_table
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Frame
@@ -40,6 +41,10 @@ def run(
     no_record: Annotated[
         bool, typer.Option("--no-record", help="Do not record to a file.")
     ] = False,
+    series: Annotated[
+        Path | None,
+        typer.Option(help="Write a row for each frame into this .csv or .parquet as well."),
+    ] = None,
     live: Annotated[
         bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
     ] = False,
@@ -56,6 +61,7 @@ def run(
     if record is not None and no_record:
         raise SceneError("--record and --no-record contradict each other; give one of them")
     check_recording_name(record)
+    check_table_name(series)
 
     # the run
     path = catalog.scene_path(scene)
@@ -65,16 +71,16 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    recordings = Recordings(simulation, target, live=live, streams=streams, paced=True)
-    paths = _run_to_end(simulation, recordings)
+    recordings = Recordings(simulation, target, series, live=live, streams=streams, paced=True)
+    files = _run_to_end(simulation, recordings)
 
     # its summary
     summary = simulation.summary()
     if as_json:
-        typer.echo(summary_json(summary, paths))
+        typer.echo(summary_json(summary, files))
         return
     out.print(summary_table(summary))
-    print_openers(paths)
+    print_files(files)
 
 
 @command("list")
@@ -100,7 +106,7 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
     view_simulation(Simulation(read_scene(catalog.scene_path(scene), settings)))
 
 
-def _run_to_end(simulation: Simulation, recordings: Recordings) -> list[Path]:
+def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
     """Run to the end, and record; the files."""
     try:
         recordings.wait_for_viewer()

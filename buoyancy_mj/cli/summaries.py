@@ -3,13 +3,13 @@
 import dataclasses
 import json
 import math
-from collections.abc import Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 from typing import Any
 
 from rich.table import Table
 
-from buoyancy_mj.cli.console import out, print_line, quote_path, viewer_command
+from buoyancy_mj.cli.console import out, print_line, viewer_command
+from buoyancy_mj.cli.recordings import Files
 from buoyancy_mj.scenes.summary import Summary
 
 
@@ -27,32 +27,31 @@ def summary_table(summary: Summary) -> Table:
     return table
 
 
-def summary_json(
-    summary: Summary, paths: Sequence[Path], others: Mapping[str, Any] | None = None
-) -> str:
-    """A summary and the path of its recording as JSON, which knows finite numbers only.
+def summary_json(summary: Summary, files: Files, others: Mapping[str, Any] | None = None) -> str:
+    """A summary and the paths of its files as JSON, which knows finite numbers only.
 
     Args:
         summary: the summary.
-        paths: files that the run left.
+        files: what the run left.
         others: more values, by name.
     """
     values: dict[str, Any] = summary.values()
     if len(summary.vehicles) > 1:
         # a table for each vehicle, in place of names with dots
         values = dataclasses.asdict(summary)
-    files = {path.suffix: str(path) for path in paths}
-    values |= {"recording": files.get(".rrd"), "mcap": files.get(".mcap"), **(others or {})}
+    values |= {name: str(path) if path else None for name, path in files._asdict().items()}
+    values |= others or {}
     return json.dumps(_drop_infinite(values), indent=2)
 
 
-def print_openers(paths: Sequence[Path]) -> None:
-    """Print the command that opens each file of a run."""
-    for path in paths:
-        if path.suffix == ".rrd":
-            print_line(out, f"open the recording: {viewer_command(path)}")
-        else:
-            print_line(out, f"written: {quote_path(path)}")
+def print_files(files: Files) -> None:
+    """Say where the files of a run are, and how a recording is opened."""
+    if files.recording is not None:
+        print_line(out, f"open the recording: {viewer_command(files.recording)}")
+    if files.series is not None:
+        print_line(out, f"the series is in '{files.series}'")
+    if files.mcap is not None:
+        print_line(out, f"the messages of ROS 2 are in '{files.mcap}'")
 
 
 def _drop_infinite(value: Any) -> Any:

@@ -3,6 +3,7 @@
 Parquet cannot grow row by row: it is made at the end of the CSV that grows in its place.
 """
 
+import contextlib
 import csv
 import io
 from collections.abc import Iterable, Sequence
@@ -115,9 +116,12 @@ class SeriesFile:
             self._file.append(text.getvalue().encode())
         except OSError as error:
             self._file.close()
+            left = self._file.partial
+            if self._file.path.suffix == ".csv":
+                with contextlib.suppress(OSError):
+                    left = self._file.take_name(complete=False)
             raise RecordingError(
-                f"the series broke off: {error.strerror}; what was written is in "
-                f"'{self._file.partial}'"
+                f"the series broke off: {error.strerror}; what was written is in '{left}'"
             ) from error
 
     def _write_parquet(self) -> None:

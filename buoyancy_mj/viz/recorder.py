@@ -13,11 +13,12 @@ from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.engine.forward import forward_without_control
 from buoyancy_mj.errors import DivergenceError, RecordingError, describe
 from buoyancy_mj.scenes.frame_source import FrameSource
-from buoyancy_mj.scenes.run import OwnRun, find_run
-from buoyancy_mj.scenes.series import Series
+from buoyancy_mj.scenes.run import find_run
 from buoyancy_mj.values import read_number
+from buoyancy_mj.viz.sinks import open_sinks
 
 if TYPE_CHECKING:
+    from buoyancy_mj.scenes.series import Series
     from buoyancy_mj.viz.recording import Recording
 
 
@@ -77,7 +78,13 @@ class Recorder:
         _check_places(path, series, live=live)
         self._run = find_run(model, data, buoyancy)
         self._source = FrameSource(model, self._run.buoyancy, self._run.vehicles)
-        self._sinks = _open_sinks(self._run, path, series, live=live)
+        self._sinks = open_sinks(
+            self._run,
+            None if path is None else Path(path),
+            None if series is None else Path(series),
+            live=live,
+            has_summary=False,
+        )
 
     def __enter__(self) -> "Recorder":
         return self
@@ -117,7 +124,8 @@ class Recorder:
         frame = self._source.take(self._run.data, self._forward)
         self._last = now
         for sink in self._sinks:
-            sink.add(frame)
+            if sink is not None:
+                sink.add(frame)
 
     def close(self, *, complete: bool = True) -> tuple[Path, ...]:
         """Give the files their names; the end of a `with` block does so.
@@ -135,7 +143,7 @@ class Recorder:
             self._closed = True
             # each is closed, whatever the others raise
             with contextlib.ExitStack() as stack:
-                for sink in self._sinks:
+                for sink in reversed(self._sinks):
                     stack.callback(self._close_sink, sink, complete=complete)
         return self.paths
 
@@ -163,9 +171,9 @@ class Recorder:
                 )
         forward_without_control(data, self._run.buoyancy)
 
-    def _close_sink(self, sink: "Recording | Series", *, complete: bool) -> None:
+    def _close_sink(self, sink: "Recording | Series | None", *, complete: bool) -> None:
         """Close one of the files, and keep where it is."""
-        if not sink.closed:
+        if sink is not None and not sink.closed:
             path = sink.close(complete=complete)
             self.paths += (path,) if path is not None else ()
 
@@ -181,22 +189,3 @@ def _check_places(path: str | Path | None, series: str | Path | None, *, live: b
             raise RecordingError(f"{what} is {describe(place)}; it must be the name of a file")
     if path is not None and Path(path).suffix != ".rrd":
         raise RecordingError(f"the recording is '{path}'; the name of a recording ends in .rrd")
-
-
-def _open_sinks(
-    run: OwnRun, path: str | Path | None, series: str | Path | None, *, live: bool
-) -> list["Recording | Series"]:
-    """Open the table and the recording; where one cannot be opened, nothing of the other stays."""
-    table = Series(run, Path(series)) if series is not None else None
-    tables = [table] if table is not None else []
-    if path is None and not live:
-        return [*tables]
-    try:
-        from buoyancy_mj.viz.recording import Recording  # needs Rerun, which takes time to import
-
-        place = Path(path) if path is not None else None
-        return [*tables, Recording(run, place, live=live, has_summary=False)]
-    except BaseException:
-        for one in tables:
-            one.discard()
-        raise
