@@ -14,6 +14,7 @@ from buoyancy_mj.errors import AutopilotError as AutopilotError
 from buoyancy_mj.errors import BallastError as BallastError
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
+from buoyancy_mj.errors import ControlError as ControlError
 from buoyancy_mj.errors import DivergenceError as DivergenceError
 from buoyancy_mj.errors import EngineError as EngineError
 from buoyancy_mj.errors import EquilibriumError as EquilibriumError
@@ -72,6 +73,23 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
+from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
+from buoyancy_mj.vehicle.allocation import Allocation as Allocation
+from buoyancy_mj.vehicle.allocation import allocation as allocation
+from buoyancy_mj.vehicle.control.controller import Control as Control
+from buoyancy_mj.vehicle.control.controller import Controller as Controller
+from buoyancy_mj.vehicle.control.controller import start_controller as start_controller
+from buoyancy_mj.vehicle.control.course import Waypoint as Waypoint
+from buoyancy_mj.vehicle.control.hold import Hold as Hold
+from buoyancy_mj.vehicle.control.keyframes import Keyframes as Keyframes
+from buoyancy_mj.vehicle.control.lqr import Lqr as Lqr
+from buoyancy_mj.vehicle.control.motion import ControlSensors as ControlSensors
+from buoyancy_mj.vehicle.control.program import Program as Program
+from buoyancy_mj.vehicle.thruster import Thruster as Thruster
+from buoyancy_mj.vehicle.thrusters import ThrusterReading as ThrusterReading
+from buoyancy_mj.vehicle.thrusters import add_thruster as add_thruster
+from buoyancy_mj.vehicle.thrusters import find_thruster as find_thruster
+from buoyancy_mj.vehicle.thrusters import read_thrusters as read_thrusters
 from buoyancy_mj.viz.recorder import Recorder as Recorder
 
 __version__ = _version("buoyancy_mj")

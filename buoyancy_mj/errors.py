@@ -56,6 +56,10 @@ class EngineError(BuoyancyError):
     """A MuJoCo that differs inside from what compiled code here relies on."""
 
 
+class ControlError(BuoyancyError):
+    """A controller that cannot act on its vehicle, fails, or gives what is no control."""
+
+
 class SweepError(BuoyancyError):
     """A sweep that makes no sense, or whose results cannot be kept."""
 

@@ -26,6 +26,7 @@ from mkdocs.structure.pages import Page
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.records import field_docs
+from buoyancy_mj.scenes.controls import CONTROLS
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.sea.waves import Wave
@@ -33,6 +34,7 @@ from buoyancy_mj.settings.config import KEYS
 from buoyancy_mj.settings.settings import Settings
 from buoyancy_mj.settings.toml import CURRENTS, WAVES
 from buoyancy_mj.submersion.methods import METHODS, Method
+from buoyancy_mj.vehicle.control.controller import Control
 
 ROOT = Path(__file__).resolve().parent.parent
 COPIES = {
@@ -45,9 +47,13 @@ UNWRITTEN = ("stem", "text", "folder", "viscous")
 """Fields that are no keys: a scene's reader fills in three, the kind of a damping is the fourth."""
 WORDS = {bool: "true or false", int: "whole number", float: "number", str: "text", Path: "path"}
 """Types as a writer of TOML says them."""
-CLASSES = {Wave: tuple(WAVES.values()), Method: tuple(METHODS.values())}
-"""Classes that stand behind a protocol."""
-KINDS = {cls: kind for table in (WAVES, CURRENTS, METHODS) for kind, cls in table.items()}
+CLASSES = {
+    Wave: tuple(WAVES.values()),
+    Method: tuple(METHODS.values()),
+    Control: tuple(CONTROLS.values()),
+}
+"""Classes that stand behind a protocol, or behind one that they share."""
+KINDS = {cls: kind for table in (WAVES, CURRENTS, METHODS, CONTROLS) for kind, cls in table.items()}
 """Kinds by the class that each becomes."""
 HEAD = ["| key | value | default | meaning |", "| --- | --- | --- | --- |"]
 

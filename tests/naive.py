@@ -297,3 +297,28 @@ def _pressure_centre(sine, cosine, stalled, slope, crossflow, plate):
         (stalled * plate, 0.75 * cosine / (4.0 + np.pi * abs(sine))),
     ]
     return sum(f * x for f, x in parts) / sum(f for f, _ in parts)
+
+
+def differentiate_step(model, data, step=1e-6):
+    """A and B of the tangent space (2 nv, 2 nv) and (2 nv, nu), by whole steps of the engine."""
+    start = data.qpos.copy(), data.qvel.copy(), data.ctrl.copy()
+    other = mujoco.MjData(model)
+
+    def run(change):
+        mujoco.mj_resetData(model, other)
+        moved, faster, pushed = np.split(change, [model.nv, 2 * model.nv])
+        other.time = data.time
+        other.qpos[:] = start[0]
+        mujoco.mj_integratePos(model, other.qpos, moved, 1.0)
+        other.qvel[:] = start[1] + faster
+        other.ctrl[:] = start[2] + pushed
+        mujoco.mj_step(model, other)
+        return other.qpos.copy(), other.qvel.copy()
+
+    columns = []
+    for change in step * np.eye(2 * model.nv + model.nu):
+        (ahead, faster), (behind, slower) = run(change), run(-change)
+        way = np.zeros(model.nv)
+        mujoco.mj_differentiatePos(model, way, 2.0 * step, behind, ahead)
+        columns.append(np.append(way, (faster - slower) / (2.0 * step)))
+    return np.split(np.array(columns).T, [2 * model.nv], axis=1)

@@ -189,7 +189,8 @@ def understand(command, *words):
     if command in ("view", "sitl"):
         return
     if command == "run":
-        words = [word for word in words if word not in ("--live", "--foxglove")] + ["--duration", "0.05"]
+        shown = ("--live", "--foxglove")
+        words = [word for word in words if word not in shown] + ["--duration", "0.05"]
     elif command == "sweep":
         words = [re.sub(r":\d$", ":1", word) for word in words] + ["--duration", "0.02"]
         if "--draws" in words:

@@ -166,14 +166,14 @@ def test_no_two_parts_of_the_auv_overlap():
 
 
 def test_the_thrusters_span_all_six_directions():
-    model = loaded("sauvc_auv")
-    data = mujoco.MjData(model)
+    model, data, buoyancy, _ = auv_under_water()
     rows = []
-    for i in range(model.nu):
-        data.ctrl[:] = 0.0
-        data.ctrl[i] = 10.0
-        mujoco.mj_forward(model, data)
-        rows.append(data.qfrc_actuator[:6].copy())
+    with buoyancy.installed():
+        for i in range(model.nu):
+            data.ctrl[:], data.act[:] = 0.0, 0.0
+            data.ctrl[i] = data.act[model.actuator_actadr[i]] = 10.0
+            mujoco.mj_forward(model, data)
+            rows.append(data.qfrc_actuator[:6].copy())
     rows = np.array(rows)
     assert model.nu == 8
     assert np.linalg.matrix_rank(rows, tol=0.1) == 6

@@ -18,8 +18,9 @@ from buoyancy_mj.kernels import wrenches
 from buoyancy_mj.kernels.arrays import gather
 from buoyancy_mj.kernels.entries import passive
 from buoyancy_mj.kernels.entries.closures import compile_kernel
-from buoyancy_mj.kernels.multibody import PATHS, Bodies, Joints
+from buoyancy_mj.kernels.multibody import Bodies, Joints
 from buoyancy_mj.kernels.passes import ALIVE
+from buoyancy_mj.kernels.paths import PATHS
 
 SEA = Water(
     density=1025.0,

@@ -135,7 +135,9 @@ def test_what_is_there_is_not_run_again(name, tmp_path, monkeypatch):
     wanted = plan(tmp_path, "start.position.2=0.3:0.9:6", name=name)
     whole = list(plan(tmp_path, "start.position.2=0.3:0.9:6", name="whole.csv").run())
     made = []
-    monkeypatch.setattr(sweep, "Simulation", lambda scene: made.append(scene) or Simulation(scene))
+    monkeypatch.setattr(
+        sweep, "Simulation", lambda scene, **_: made.append(scene) or Simulation(scene)
+    )
     going = wanted.run()
     for _ in range(3):
         next(going)

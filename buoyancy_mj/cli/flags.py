@@ -54,6 +54,8 @@ class SceneFlags:
     """Find the submersion by this method: exact (the default), convex_hull or sections."""
     settings: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE")] = None
     """Set any field of the scene, as in water.waves.0.amplitude=0.1; may be repeated."""
+    trust: Annotated[bool, typer.Option("--trust")] = False
+    """Run the Python file that the scene names as its controller; read it before."""
 
     def overrides(self) -> Iterator[str]:
         """The flags as texts KEY=VALUE for `read_scene`."""

@@ -69,7 +69,7 @@ def run(
     with err.status(
         "preparing (the first run after an installation compiles, which takes some seconds)"
     ):
-        simulation = Simulation(read_scene(path, settings), through=through)
+        simulation = Simulation(read_scene(path, settings), through=through, trust=flags.trust)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
     recordings = Recordings(simulation, target, series, live=live, streams=streams, paced=True)
     files = _run_to_end(simulation, recordings)
@@ -103,7 +103,8 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
     from buoyancy_mj.viz.viewer import view_simulation  # needs a display, which 'run' does not
 
     settings = [*flags.overrides(), *selection.overrides()]
-    view_simulation(Simulation(read_scene(catalog.scene_path(scene), settings)))
+    read = read_scene(catalog.scene_path(scene), settings)
+    view_simulation(Simulation(read, trust=flags.trust))
 
 
 def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:

@@ -56,7 +56,8 @@ def sweep(
     settings = (*flags.overrides(), *selection.overrides())
     read_scene(path, settings)
     values = ranges.grid(fields) if draws is None else ranges.draws(fields, draws, seed)
-    plan = Sweep(path, settings, tuple(field.key for field in fields), tuple(values), out)
+    keys = tuple(field.key for field in fields)
+    plan = Sweep(path, settings, keys, tuple(values), out, trust=flags.trust)
 
     # the runs
     done, failures = 0, []

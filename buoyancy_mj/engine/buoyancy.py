@@ -10,7 +10,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine import callbacks
+from buoyancy_mj.engine import callbacks, presence
 from buoyancy_mj.engine.acting import ActingWater
 from buoyancy_mj.engine.checks import (
     check_actuation,
@@ -211,6 +211,7 @@ class Buoyancy(ReadOnly):
         callbacks.check_single(self.model)
         check_data(self.model, data)
         check_forwarded(data)
+        presence.note_called(self._acting)
         self._acting.act(data)
 
     def act_late(self, data: mujoco.MjData) -> None:
@@ -280,6 +281,11 @@ class Buoyancy(ReadOnly):
                     "call mj_forward while it acts, or use evaluate"
                 )
             return self._read(record, data)
+
+    @property
+    def acting(self) -> ActingWater:
+        """What acts on data: the hulls, and what passes over them leave."""
+        return self._acting
 
     @property
     def compiled(self) -> CompiledWater:

@@ -13,6 +13,7 @@ from typing import Any
 
 import mujoco
 
+from buoyancy_mj.engine import presence
 from buoyancy_mj.engine.acting import ActingWater
 from buoyancy_mj.engine.checks import check_actuation, skips_passive
 from buoyancy_mj.engine.compiled import CompiledWater
@@ -228,12 +229,14 @@ def _enter(water: ActingWater, native: bool | None, through: str, *, copies: boo
     )
     _lent.append(link)
     _set(slot, link.function)
+    presence.note_lent(water, copies=copies)
     return link
 
 
 def _leave(link: _Installed) -> None:
     """Take a water out of its chain."""
     _lent.remove(link)
+    presence.note_left(link.water)
     now = _get(link.slot)
     follower = next((other for other in _lent if other.previous is link.function), None)
     try:

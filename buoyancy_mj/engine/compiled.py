@@ -19,8 +19,9 @@ from buoyancy_mj.kernels.entries import loads, passive
 from buoyancy_mj.kernels.entries.closures import compile_kernel
 from buoyancy_mj.kernels.entries.tables import Links, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
-from buoyancy_mj.kernels.multibody import NO_GRAVITY, PATHS, PGS, sum_sizes
+from buoyancy_mj.kernels.multibody import NO_GRAVITY, PGS, sum_sizes
 from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
+from buoyancy_mj.kernels.paths import PATHS
 from buoyancy_mj.submersion.exact import PackedHulls
 
 THREADS = 64

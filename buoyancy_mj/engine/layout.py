@@ -37,8 +37,11 @@ _PROBE = """
   <worldbody>
     <body name="a">
       <freejoint/><geom type="box" size="1 2 3"/><body><joint/><geom size="1"/></body>
+      <site name="b" pos="1 2 3"/>
     </body>
   </worldbody>
+  <actuator><general site="b" dyntype="integrator" ctrllimited="true" ctrlrange="-1 2"/></actuator>
+  <sensor><framepos objtype="site" objname="b"/></sensor>
   <equality><weld body1="a"/></equality>
 </mujoco>
 """

@@ -2,6 +2,8 @@
 
 import ctypes
 import hashlib
+from collections.abc import Sequence
+from typing import Any
 
 import mujoco
 
@@ -24,6 +26,19 @@ MODEL_ARRAYS = (
 Models that agree in them share a water. Masses, the timestep and all else that matters are read
 anew in each pass."""
 
+DEVICE_ARRAYS = (
+    "names", "plugin", "plugin_attr", "plugin_attradr", "body_parentid", "body_weldid",
+    "body_plugin", "body_pos", "body_quat", "geom_bodyid", "geom_type", "geom_size", "geom_pos",
+    "geom_quat", "geom_dataid", "site_bodyid", "site_pos", "site_quat", "site_size",
+    "actuator_plugin", "actuator_trntype", "actuator_trnid", "actuator_gear", "actuator_ctrlrange",
+    "actuator_ctrllimited", "actuator_actadr", "actuator_actnum", "actuator_ctrladr",
+    "actuator_outadr", "actuator_forcelimited", "actuator_delay",
+    "sensor_plugin", "sensor_objtype", "sensor_objid", "sensor_adr", "sensor_dim",
+    "plugin_stateadr", "plugin_statenum",
+    "numeric_adr", "numeric_size", "numeric_data", "text_adr", "text_size", "text_data",
+)  # fmt: skip
+"""Arrays of mjModel from which thrusters, tanks and sensors are made."""
+
 _DISABLE = mujoco.mjtDisableBit
 _FLAGS = {
     "mjModel.opt.disableflags": int(_DISABLE.mjDSBL_SPRING)
@@ -38,7 +53,12 @@ _WORD = ctypes.c_int64
 
 def read_config(model: int, instance: int) -> dict[str, str]:
     """The configuration of a plugin instance of the model at an address: texts by key."""
-    return {key: _read_key(model, instance, key) for key in KEYS}
+    return read_texts(model, instance, KEYS)
+
+
+def read_texts(model: int, instance: int, keys: Sequence[str]) -> dict[str, str]:
+    """The texts of some keys of a plugin instance of the model at an address; '' for none."""
+    return {key: _read_key(model, instance, key) for key in keys}
 
 
 def read_first_name(model: int, instance: int) -> str:
@@ -50,10 +70,7 @@ def fingerprint_model(model: int, instance: int) -> bytes:
     """A hash (16 bytes) of all from which the water of an instance of a model is made."""
     texts = read_config(model, instance)
     digest = hashlib.blake2b(f"{instance} {texts}".encode(), digest_size=16)
-    for name in MODEL_ARRAYS:
-        values = layout.content(f"mjModel.{name}", model)
-        digest.update(len(values).to_bytes(8))
-        digest.update(values)
+    _digest_arrays(digest, model, MODEL_ARRAYS)
 
     # the compiler disables other flags for a while
     for path, mask in _FLAGS.items():
@@ -61,6 +78,21 @@ def fingerprint_model(model: int, instance: int) -> bytes:
         digest.update(str(flags).encode())
     digest.update(ctypes.string_at(model + layout.offset("mjModel.opt.gravity"), 3 * 8))
     return digest.digest()
+
+
+def fingerprint_devices(model: int) -> bytes:
+    """A hash (16 bytes) of all from which the thrusters, tanks and sensors of a model are made."""
+    digest = hashlib.blake2b(digest_size=16)
+    _digest_arrays(digest, model, DEVICE_ARRAYS)
+    return digest.digest()
+
+
+def _digest_arrays(digest: Any, model: int, arrays: Sequence[str]) -> None:
+    """Let a hash take in arrays of the model at an address."""
+    for name in arrays:
+        values = layout.content(f"mjModel.{name}", model)
+        digest.update(len(values).to_bytes(8))
+        digest.update(values)
 
 
 def copy_model(model: int) -> mujoco.MjModel:

@@ -1,4 +1,4 @@
-"""Pickles of models with water, and of their data, which bring this package along.
+"""Pickles of models with water or devices, and of their data, which bring this package along.
 
 MuJoCo's own pickle of a model names its plugins by number, and a process that has not imported this
 package ends when it makes data of it. Its pickle of data holds addresses of what plugins keep for
@@ -12,6 +12,7 @@ from typing import Any
 import mujoco
 
 from buoyancy_mj.engine import layout
+from buoyancy_mj.engine.devices import device_instances
 from buoyancy_mj.engine.instances import plugin_instances
 
 
@@ -24,8 +25,8 @@ def _reduce_data(data: mujoco.MjData) -> tuple[Any, ...]:
 
 
 def _reduce(value: Any, model: mujoco.MjModel) -> tuple[Any, ...]:
-    """How to pickle a model or its data: by a function of this package where there is water."""
-    if not plugin_instances(model):
+    """How to pickle a model or its data: by a function of this package where it has plugins."""
+    if not _find_instances(model):
         reduced: tuple[Any, ...] = value.__reduce_ex__(2)
         return reduced
     return _restore, (type(value), value.__getstate__())
@@ -37,10 +38,15 @@ def _restore(kind: Any, state: Any) -> Any:
     value.__setstate__(state)
     if isinstance(value, mujoco.MjData):
         records = layout.word(value._address + layout.offset("mjData.plugin_data"))
-        for instance in plugin_instances(value.model):
+        for instance in _find_instances(value.model):
             # the next pass finds a record of this process
             ctypes.c_int64.from_address(records + 8 * instance).value = 0
     return value
+
+
+def _find_instances(model: mujoco.MjModel) -> list[int]:
+    """Indices of the plugin instances of this package."""
+    return plugin_instances(model) + device_instances(model)
 
 
 def pickle_with_water() -> None:

@@ -23,6 +23,7 @@ import mujoco
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.engine.instances import PLUGIN, find_instance
+from buoyancy_mj.engine.named_instances import name_instances
 from buoyancy_mj.engine.pickles import pickle_with_water
 from buoyancy_mj.engine.registration import register
 from buoyancy_mj.engine.waters import find_water, remember_settings
@@ -82,6 +83,7 @@ def add_water(
     config = write_plugin_config(settings)
     remember_settings(config, settings)
     make_room(spec, settings.added_mass)
+    name_instances(spec)
     spec.activate_plugin(PLUGIN)
     plugin = spec.add_plugin(name=instance, plugin_name=PLUGIN, active=True)
     if any(body.plugin.active and body.plugin.name == instance for body in spec.bodies):

@@ -1,4 +1,4 @@
-"""The plugin registered with MuJoCo: its struct, its compiled functions, and what they ask."""
+"""The water's plugin registered with MuJoCo: its compiled functions, and what they ask."""
 
 import ctypes
 import functools
@@ -9,6 +9,7 @@ from buoyancy_mj.engine import compiled, layout
 from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.engine.model_memory import MODEL_ARRAYS
+from buoyancy_mj.engine.plugin_struct import register_plugin
 from buoyancy_mj.engine.waters import LOCK, find_water, is_making_water
 from buoyancy_mj.kernels.entries import plugin_hooks
 from buoyancy_mj.kernels.entries.closures import Closure
@@ -16,13 +17,6 @@ from buoyancy_mj.kernels.entries.views import Table
 from buoyancy_mj.kernels.passes import ALIVE, MODEL, WATER
 from buoyancy_mj.settings.config import INSTANCE, KEYS
 
-_HOOKS = (
-    "nstate", "nsensordata", "init", "destroy", "copy", "reset", "compute", "advance", "visualize",
-    "actuator_act_dot",
-    "sdf_distance", "sdf_gradient", "sdf_staticdistance", "sdf_attribute", "sdf_aabb",
-)  # fmt: skip
-"""Functions of MuJoCo's mjpPlugin, in their order."""
-_INT = ctypes.c_int
 _WORD = ctypes.c_int64
 
 
@@ -54,19 +48,6 @@ def _resolve(model: int, data: int, instance: int) -> None:
             compiled.read_ids(record)[ALIVE] = 0
 
 
-class _Plugin(ctypes.Structure):
-    """MuJoCo's mjpPlugin, of mjplugin.h."""
-
-    _fields_ = (
-        ("name", ctypes.c_char_p),
-        ("nattribute", _INT),
-        ("attributes", ctypes.POINTER(ctypes.c_char_p)),
-        ("capabilityflags", _INT),
-        ("needstage", _INT),
-        *((name, ctypes.c_void_p) for name in _HOOKS),
-    )
-
-
 class _Engine:
     """The plugin as the engine knows it.
 
@@ -91,15 +72,11 @@ class _Engine:
             )
             for hook in plugin_hooks.HOOKS
         }
-        keys = [key.encode() for key in (*KEYS, INSTANCE)]
-        self._attributes = (ctypes.c_char_p * len(keys))(*keys)
-        self._plugin = _Plugin(
-            name=PLUGIN.encode(),
-            nattribute=len(keys),
-            attributes=self._attributes,
-            capabilityflags=int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
-            needstage=int(mujoco.mjtStage.mjSTAGE_VEL),
-            **{name: closure.address for name, closure in self._functions.items()},
+        register_plugin(
+            PLUGIN,
+            (*KEYS, INSTANCE),
+            int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
+            int(mujoco.mjtStage.mjSTAGE_VEL),
+            {name: closure.address for name, closure in self._functions.items()},
         )
-        layout.function("mjp_registerPlugin", _INT, ctypes.c_void_p)(ctypes.addressof(self._plugin))
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))

@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths, Words, leaves
+from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths, Words
 
 
 class Option(NamedTuple):
@@ -123,16 +123,6 @@ class Identity(NamedTuple):
     """Bits of the sizes of its geoms."""
 
 
-PATHS = tuple(
-    dict.fromkeys(
-        path
-        for kind in (Engine, Identity)
-        for field in leaves(kind)
-        for path in (field.path, *(f"mjModel.{n}" for n in field.shape if isinstance(n, str)))
-    )
-)
-"""Where all of these are in MuJoCo's structs, as "mjData.xpos", and the extents of their arrays, as
-"mjModel.nbody"."""
 GOLDEN = np.int64(-7046029254386353131)
 """2^64 over the golden ratio, as a signed word."""
 NO_GRAVITY, PGS = 1 << 7, 0

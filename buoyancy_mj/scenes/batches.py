@@ -9,7 +9,7 @@ from mujoco import batch
 
 from buoyancy_mj.engine.c_functions import find_cause, raise_causes
 from buoyancy_mj.engine.instances import plugin_instances
-from buoyancy_mj.errors import BuoyancyError, DivergenceError
+from buoyancy_mj.errors import BuoyancyError, ControlError, DivergenceError
 from buoyancy_mj.scenes.divergence import QUANTITIES, describe_divergence
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.trajectory import Trajectory
@@ -45,7 +45,7 @@ def run_simulations(
         for start in range(0, len(group), size):
             numbers = group[start : start + size]
             members = [simulations[number] for number in numbers]
-            if plugin_instances(members[0].model) and _trajectory_size(members[0]) <= MOST_MEMORY:
+            if _can_batch(members[0]):
                 reasons = run_batch(members, threads)
             else:
                 reasons = [_run_alone(member) for member in members]
@@ -164,11 +164,20 @@ def _run_alone(simulation: Simulation) -> str:
     try:
         for _ in simulation.frames():
             pass
-    except DivergenceError as error:
+    except (ControlError, DivergenceError) as error:
         return str(error)
     except mujoco.FatalError as error:
         return _find_reason(str(error))
     return ""
+
+
+def _can_batch(simulation: Simulation) -> bool:
+    """Whether the engine can step a simulation by itself: controllers are Python, step by step."""
+    return bool(
+        plugin_instances(simulation.model)
+        and not simulation.scene.control
+        and _trajectory_size(simulation) <= MOST_MEMORY
+    )
 
 
 def _trajectory_size(simulation: Simulation) -> float:
@@ -181,4 +190,5 @@ def _batch_key(simulation: Simulation) -> tuple[float, ...]:
     """Numbers that simulations must share to be stepped in one batch."""
     model = simulation.model
     sizes = [getattr(model, name) for name in _SIZES]
-    return (*sizes, simulation.steps, model.opt.timestep, len(plugin_instances(model)))
+    kinds = (len(plugin_instances(model)), len(simulation.scene.control))
+    return (*sizes, simulation.steps, model.opt.timestep, *kinds)

@@ -101,8 +101,13 @@ class Monitor:
             if self.first_contact is None:
                 self.first_contact = time
 
-    def summary(self, start: float) -> VehicleSummary:
-        """The run so far; the range of heights is taken from a time [s] on."""
+    def summary(self, start: float, updates_at_limits: int | None = None) -> VehicleSummary:
+        """The run so far.
+
+        Args:
+            start: time from which the range of heights is taken [s].
+            updates_at_limits: what the controller knows, see `VehicleSummary`.
+        """
         vehicle = self._vehicle
         return VehicleSummary(
             mass=vehicle.mass,
@@ -113,6 +118,7 @@ class Monitor:
             cog_z_range=self.height_range(start),
             contact_steps=self.contact_steps,
             first_contact=self.first_contact,
+            updates_at_limits=updates_at_limits,
         )
 
     def height_range(self, start: float) -> float:

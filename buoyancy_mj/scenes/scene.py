@@ -9,6 +9,7 @@ import mujoco
 
 from buoyancy_mj.errors import SceneError, SceneTypeError, choices, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
+from buoyancy_mj.scenes.controls import check_controls, controls_from_tables
 from buoyancy_mj.scenes.overrides import apply_setting
 from buoyancy_mj.scenes.scene_vehicle import (
     SceneVehicle,
@@ -30,6 +31,7 @@ from buoyancy_mj.settings.toml import (
     water_from_table,
 )
 from buoyancy_mj.values import set_number
+from buoyancy_mj.vehicle.control.controller import Control
 
 INTEGRATORS = {
     name.removeprefix("mjINT_").lower(): integrator
@@ -66,6 +68,9 @@ class Scene(Settings):
     """Number of frames recorded per simulated second [Hz]."""
     start: Start = Start()
     """Pose and velocity at time 0."""
+    control: tuple[Control, ...] = ()
+    """What steers the vehicles, one controller for each; a table, or several tables
+    [[control]]."""
     coefficients: CoefficientsFile | None = None
     """A potential-flow code's dataset of added mass and radiation damping, for bodies whose file
     states none."""
@@ -90,6 +95,9 @@ class Scene(Settings):
         ):
             set_number(self, SceneError, name, least=least, most=most)
         check_masses(self)
+        controls = (self.control,) if isinstance(self.control, Control) else tuple(self.control)
+        object.__setattr__(self, "control", controls)
+        check_controls(controls)
         self._check_vehicles()
         object.__setattr__(self, "vehicles", name_vehicles(self.vehicles))
         if self.integrator.lower() not in INTEGRATORS:
@@ -203,6 +211,8 @@ def scene_from_table(
     fields["water"] = water_from_table(plain.pop("water", {}), f"{where}: water", folder)
     fields |= read_inner_tables(plain, where)
     fields["vehicles"] = vehicles_from_tables(plain.pop("vehicles", []), where)
+    if "control" in plain:
+        fields["control"] = controls_from_tables(plain.pop("control"), where)
     fields["damping"] = damping_from_table(plain.pop("damping", True), f"{where}: damping")
     fields["method"] = method_from_table(plain.pop("method", "exact"), f"{where}: method")
 

@@ -24,8 +24,10 @@ from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.frames import Frame, take_only
 from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
+from buoyancy_mj.scenes.steering import Steering
 from buoyancy_mj.scenes.summary import LAST, Summary
 from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
+from buoyancy_mj.vehicle.control.controller import Controller
 
 
 class Simulation(ReadOnly):
@@ -35,17 +37,19 @@ class Simulation(ReadOnly):
         scene: what to run.
         through: where the water's forces enter; by 'qfrc_passive' the water is a part of the model,
             by 'xfrc_applied' a callback, see `Buoyancy.installed`.
+        trust: whether to run the Python files that the scene names as controllers.
 
     Raises:
         ModelError, MeshError, SceneError: what `assemble` and `Buoyancy` raise; also a vehicle
             whose displacement is absurd for its mass.
+        SceneError, ControlError: a controller that is not trusted, or cannot steer its vehicle.
         EngineError: there is no such `through`.
 
     Example:
         `drafts = [frame.draft for frame in Simulation(read_scene(path)).frames()]`
     """
 
-    def __init__(self, scene: Scene, *, through: str = PASSIVE) -> None:
+    def __init__(self, scene: Scene, *, through: str = PASSIVE, trust: bool = False) -> None:
         self.scene = scene
         """The scene."""
         self.model, self.data, afloat = assemble(scene, with_water=through == PASSIVE)
@@ -82,6 +86,13 @@ class Simulation(ReadOnly):
         with self._lend_water(), raise_causes():
             mujoco.mj_forward(self.model, start)
         self.buoyancy.water.elevation(0.0, 0.0, 0.0)
+
+        # what steers, from the poses and sensors at the start
+        self._steering: Steering | None = None
+        if scene.control:
+            with self._lend_water(), raise_causes():
+                mujoco.mj_forward(self.model, self.data)
+                self._steering = Steering(scene, self.model, self.data, afloat, trust=trust)
         self._seal("make another Simulation of a changed scene (dataclasses.replace)", Simulation)
 
     @property
@@ -98,6 +109,11 @@ class Simulation(ReadOnly):
     def vehicle(self) -> Vehicle:
         """The only vehicle; an error that names them where there are several."""
         return take_only(self.vehicles)
+
+    @property
+    def controllers(self) -> dict[str, Controller]:
+        """The controllers at work, by the vehicle that each steers; a hold has its `course`."""
+        return {} if self._steering is None else self._steering.controllers
 
     @property
     def hulls(self) -> tuple[Hull, ...]:
@@ -146,13 +162,16 @@ class Simulation(ReadOnly):
         self._wall_time = time.perf_counter() - started
 
     def step(self) -> None:
-        """Take one timestep with the water acting.
+        """Take one timestep with the water acting, steered by the controllers that are due.
 
         Raises:
+            ControlError: a controller raises, or gives what is no finite number.
             DivergenceError: a position, velocity or acceleration left the finite numbers, or all
                 reason: see `Limits`.
             KeyboardInterrupt: Ctrl-C, also while Python code submerges.
         """
+        if self._steering is not None:
+            self._steering.update(self.data)
         with self._lend_water(), raise_causes():
             mujoco.mj_step(self.model, self.data)
 
@@ -211,11 +230,13 @@ class Simulation(ReadOnly):
     def summary(self) -> Summary:
         """Sum up the run so far."""
         end = float(self.data.time)
+        at_limits = {} if self._steering is None else self._steering.at_limits
         return Summary(
             scene=self.scene.title,
             method=self.scene.method.name,
             vehicles={
-                name: monitor.summary(end - LAST) for name, monitor in self._source.monitors.items()
+                name: monitor.summary(end - LAST, at_limits.get(name))
+                for name, monitor in self._source.monitors.items()
             },
             simulated_time=end,
             wall_time=self._wall_time,

@@ -8,6 +8,8 @@ from buoyancy_mj.scenes.frames import take_only
 
 LAST = 2.0
 """Length of the end of a run [s] over which the summary takes the range of heights."""
+_OF_STEERED = "updates_at_limits"
+"""What the summary says only of vehicles that have a controller."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -30,6 +32,8 @@ class VehicleSummary:
     """Number of steps in which it touched the bottom or another fixed thing."""
     first_contact: float | None
     """Time of the first touch [s]; None without one."""
+    updates_at_limits: int | None = None
+    """Number of updates of its controller in which a control was at a limit; None without one."""
 
     def rows(self) -> list[tuple[str, str]]:
         """The numbers as a table: names, and values with units."""
@@ -39,6 +43,7 @@ class VehicleSummary:
             if self.contact_steps
             else "none"
         )
+        limits = self.updates_at_limits
         return [
             ("mass", f"{self.mass:.3f} kg"),
             ("displacement, fully under water", f"{self.displacement:.3f} kg"),
@@ -46,6 +51,7 @@ class VehicleSummary:
             ("peak draft", f"{self.peak_draft:.3f} m"),
             ("final draft", f"{self.final_draft:.3f} m"),
             (f"CoG z range, last {LAST:g} s", f"{self.cog_z_range:.4f} m"),
+            *([] if limits is None else [("controls at their limits", f"{limits} updates")]),
             ("contact with the bottom or walls", contact),
         ]
 
@@ -111,6 +117,11 @@ class Summary:
         """Time of the only vehicle's first touch [s]; None without one."""
         return take_only(self.vehicles).first_contact
 
+    @property
+    def updates_at_limits(self) -> int | None:
+        """Updates of the only vehicle's controller with a control at a limit; None without one."""
+        return take_only(self.vehicles).updates_at_limits
+
     def rows(self) -> list[tuple[str, ...]]:
         """The summary as a table: names, then the value of each vehicle with its unit.
 
@@ -118,7 +129,8 @@ class Summary:
         the only one.
         """
         tables = [vehicle.rows() for vehicle in self.vehicles.values()]
-        rows = [(name, *(dict(table)[name] for table in tables)) for name, _ in tables[0]]
+        names = max((dict(table) for table in tables), key=len)
+        rows = [(name, *(dict(table).get(name, "") for table in tables)) for name in names]
         if len(tables) > 1:
             return rows
         *numbers, contact = rows
@@ -141,19 +153,30 @@ class Summary:
     def values(self) -> dict[str, Any]:
         """All numbers by name; of several vehicles each has its own, called NAME.number."""
         values = {}
-        for name in list_values(list(self.vehicles)):
+        steered = [name for name, one in self.vehicles.items() if one.updates_at_limits is not None]
+        for name in list_values(list(self.vehicles), steered):
             vehicle, _, number = name.rpartition(".")
             values[name] = getattr(self.vehicles[vehicle] if vehicle else self, number)
         return values
 
 
-def list_values(vehicles: Sequence[str]) -> list[str]:
-    """The names of the values of a summary in their order, for vehicles of these names."""
-    numbers = [field.name for field in dataclasses.fields(VehicleSummary)]
+def list_values(vehicles: Sequence[str], steered: Sequence[str] = ()) -> list[str]:
+    """The names of the values of a summary in their order.
+
+    Args:
+        vehicles: names of all vehicles.
+        steered: names of those that have a controller.
+    """
+    names = [field.name for field in dataclasses.fields(VehicleSummary)]
     times = ["simulated_time", "wall_time", "real_time_factor"]
+    own = {
+        vehicle: [name for name in names if name != _OF_STEERED or vehicle in steered]
+        for vehicle in vehicles
+    }
     if len(vehicles) == 1:
         contacts = ["contact_steps", "first_contact"]
+        (numbers,) = own.values()
         others = [name for name in numbers if name not in contacts]
         return ["scene", "method", *others, *times, *contacts]
-    of_vehicles = [f"{vehicle}.{name}" for vehicle in vehicles for name in numbers]
+    of_vehicles = [f"{vehicle}.{name}" for vehicle in vehicles for name in own[vehicle]]
     return ["scene", "method", *times, *of_vehicles]

@@ -21,6 +21,7 @@ from buoyancy_mj.scenes.batches import run_simulations
 from buoyancy_mj.scenes.journal import Journal, write_parquet
 from buoyancy_mj.scenes.scene import Scene, read_scene
 from buoyancy_mj.scenes.simulation import Simulation
+from buoyancy_mj.scenes.steering import check_trust
 from buoyancy_mj.scenes.summary import list_values
 
 BATCH_SIZE = 64
@@ -49,6 +50,8 @@ class Sweep:
     """Values of these fields in each run."""
     out: Path
     """File of the results: .csv, or .parquet."""
+    trust: bool = False
+    """Whether to run the Python files that the scene names as controllers."""
 
     def __post_init__(self) -> None:
         if self.out.suffix not in (".csv", ".parquet"):
@@ -70,11 +73,13 @@ class Sweep:
             A row for each run, those of earlier sweeps first.
 
         Raises:
-            SceneError: a key that the scene does not have.
+            SceneError: a key that the scene does not have, or a controller that is not trusted.
             SweepError: the file of the results holds something else, another sweep is writing it,
                 or it cannot be written; a file that a run needs cannot be read, or the memory runs
                 out. What is done stays, and is not run again.
         """
+        check_trust(read_scene(self.path, self.settings), trust=self.trust)
+
         # parquet cannot grow row by row: a journal stands beside it until all is done
         is_parquet = self.out.suffix == ".parquet"
         table = self.out.resolve() if self.out.is_symlink() else self.out
@@ -107,7 +112,10 @@ class Sweep:
     @functools.cached_property
     def _results(self) -> list[str]:
         """Columns of the summary; a sweep with several vehicles has NAME.column for each."""
-        names = list_values(self._name_vehicles())
+        vehicles = self._name_vehicles()
+        controls = read_scene(self.path, self.settings).control
+        steered = [control.vehicle or vehicles[0] for control in controls]
+        names = list_values(vehicles, steered)
         return [name for name in names if name not in (*_NO_COLUMNS, *self.keys)]
 
     def _name_vehicles(self) -> list[str]:
@@ -131,7 +139,9 @@ class Sweep:
         """A short text of all that the runs have in common."""
         scene = read_scene(self.path, self.settings)
         models = [catalog.model_path(entry.model, scene.folder) for entry in scene.entries]
-        files = [path.read_bytes() for path in (self.path, *models)]
+        controls = [path for control in scene.control for path in control.list_files(scene.folder)]
+        read = [path for path in (self.path, *models, *controls) if path.is_file()]
+        files = [path.read_bytes() for path in read]
         common = repr((*files, self.settings, self.keys))
         return f"{self.path.stem} {hashlib.blake2b(common.encode(), digest_size=4).hexdigest()}"
 
@@ -168,7 +178,7 @@ class Sweep:
             simulations: dict[int, Simulation] = {}
             for run in missing[start : start + BATCH_SIZE]:
                 try:
-                    simulations[run] = Simulation(self._read_scene(run))
+                    simulations[run] = Simulation(self._read_scene(run), trust=self.trust)
                 except BuoyancyError as error:
                     if not _is_of_values(error):
                         raise _UntriedError(str(error)) from error

@@ -1,6 +1,7 @@
 """What a vehicle acts and senses with: thrusters, tanks, sensors, and what drives them.
 
-In: MJCF or an MjSpec, then the engine's arrays, pass by pass.
-Out: actuators and sensors that work wherever MuJoCo steps.
-May import: engine, inspection, settings, statics, loads, hulls, kernels, values, errors, records.
+In: MJCF, an MjSpec or a model; then the engine's arrays, pass by pass.
+Out: actuators and sensors that work wherever MuJoCo steps, and controls in `data.ctrl`.
+May import: engine, inspection, settings, statics, loads, sea, hulls, kernels, values,
+errors, records.
 """

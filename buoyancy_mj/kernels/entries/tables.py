@@ -44,7 +44,7 @@ class WaterTable(NamedTuple):
     acting: Annotated[Words, ("n",)]
     """Addresses of the C functions of the loads that act, see `entries.loads`."""
     offsets: int
-    """Address of the byte offsets of `multibody.PATHS`."""
+    """Address of the byte offsets of `paths.PATHS`."""
     pool: Annotated[Words, ("p",)]
     """Addresses of a `Workplace` for each of several threads."""
     records: Annotated[Words, ("p",)]

@@ -13,7 +13,7 @@ from numba.extending import intrinsic
 from numba.np.arrayobj import make_array, populate_array
 
 from buoyancy_mj.kernels.arrays import Field, T, conform, fields, leaves, numba_type
-from buoyancy_mj.kernels.multibody import PATHS
+from buoyancy_mj.kernels.paths import PATHS
 
 WORDS = 3
 """Words of a table for each array."""
@@ -86,7 +86,7 @@ def view(typing, table, kind):
 
 @intrinsic
 def view_engine(typing, model, data, offsets, kind):
-    """The NamedTuple of a class, of `kernels.multibody`, that an mjModel and an mjData hold.
+    """The NamedTuple of a class, such as `multibody.Engine`, that an mjModel and an mjData hold.
 
     `offsets` is the address of the byte offsets of `PATHS`, which holds them in that order.
     """

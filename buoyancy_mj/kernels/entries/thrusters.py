@@ -1,0 +1,25 @@
+"""Thrusters as C functions of the addresses of mjModel, mjData and a `Propulsor`."""
+
+from numba import int64
+
+from buoyancy_mj.kernels.entries.views import view, view_engine
+from buoyancy_mj.kernels.sea import Sea
+from buoyancy_mj.kernels.vehicle import thrusters
+from buoyancy_mj.kernels.vehicle.equipment import Equipment
+from buoyancy_mj.kernels.vehicle.thrusters import Propulsor
+
+
+def advance_thruster(model: int64, data: int64, thruster: int64) -> int64:
+    """See `thrusters.advance`; returns 0, for it cannot fail."""
+    known = view(thruster, Propulsor)
+    equipment = view_engine(model, data, known.device.offsets, Equipment)
+    thrusters.advance(known, equipment, view(known.device.sea, Sea))
+    return 0
+
+
+def push_thruster(model: int64, data: int64, thruster: int64) -> int64:
+    """See `thrusters.push`; returns 0, for it cannot fail."""
+    known = view(thruster, Propulsor)
+    equipment = view_engine(model, data, known.device.offsets, Equipment)
+    thrusters.push(known, equipment, view(known.device.sea, Sea))
+    return 0
