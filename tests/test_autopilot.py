@@ -18,7 +18,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 from typer.testing import CliRunner
 
-from buoyancy_mj import AutopilotError, Simulation
+from buoyancy_mj import AutopilotError, Simulation, read_thrusters
+from buoyancy_mj.autopilot.battery import Battery
 from buoyancy_mj.autopilot.channels import connect, find_idle
 from buoyancy_mj.autopilot.link import Link
 from buoyancy_mj.autopilot.lockstep import Lockstep, Turn, find_substeps, fit_timestep
@@ -302,6 +303,29 @@ def test_range_finders_tell_their_distance_and_far_where_they_meet_nothing(tmp_p
         start={"position": [0.0, 0.0, -4.0]},
     )
     assert sense(simulation).distances == pytest.approx((FAR, 6.0), abs=1e-3)
+
+
+def test_the_battery_gives_what_the_thrusters_draw(tmp_path):
+    simulation = simulate(start={"position": [0.0, 0.0, -5.0]})
+    battery = Battery(simulation.model, simulation.vehicle)
+    channels = connect(simulation.model, simulation.vehicle, "vectored_6dof")
+    pulses = PulseMap(simulation.model, channels)
+    currents = []
+    for width in (1500, 1900):
+        pulses.apply([width] * 16, simulation.data.ctrl)
+        for _ in range(100):
+            simulation.step()
+        drawn = [one.current for one in read_thrusters(simulation.model, simulation.data)]
+        voltage, current = battery.read(simulation.data)
+        assert current == pytest.approx(sum(drawn))
+        currents.append(current)
+    assert voltage == 16.0
+    assert currents[0] < 1.0
+
+    # the table of a T200 at 16 V says 24 A at full throttle ahead, and less where it gathers way
+    assert 0.7 * 24.0 < currents[1] / 8 < 24.5
+    bare = ball(tmp_path)
+    assert Battery(bare.model, bare.vehicle).read(bare.data) is None
 
 
 # which thruster each output drives
@@ -682,6 +706,10 @@ def test_each_start_of_an_autopilot_has_a_recording_of_its_own():
             ["fleet"],
             "error: the scene has 4 vehicles, and an autopilot drives one; name it (--vehicle); "
             "possible: catamaran, middle, port, starboard",
+        ),
+        (
+            ["bluerov2_heavy_station", "--timeout", "0.05"],
+            "note: the scene's [control] of this vehicle rests",
         ),
         (["fleet", "--vehicle", "cat"], "error: the scene has no vehicle 'cat'; possible: "),
         (

@@ -1,10 +1,4 @@
-"""`Readings`: what an autopilot senses of its vehicle, in the frames of aviation.
-
-MuJoCo's world has z up. An autopilot has north, east and down (NED): north is the world's x, so
-that a vehicle without yaw heads north, east its -y, and down its -z from the still level. A vehicle
-has x forward, y to port and z up; an autopilot has x forward, y to starboard and z down (FRD). Both
-changes are the same half turn about x: the signs of y and z.
-"""
+"""`Readings`: what an autopilot senses of its vehicle, in the frames of aviation."""
 
 from typing import NamedTuple
 
@@ -12,20 +6,18 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.autopilot.battery import Battery
+from buoyancy_mj.autopilot.imu import HALF_TURN, find_imu, imu_pose
 from buoyancy_mj.engine.instances import plugin_name
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.simulation import Simulation
 
-HALF_TURN = np.array([1.0, -1.0, -1.0])
-"""Signs that turn axes with z up into axes with z down, and back."""
 FAR = 1.0e4
 """What a range finder tells where it meets nothing [m]: beyond the range of any."""
 ALTIMETER = "buoyancy_mj.altimeter"
 """Plugin of the altimeters, which are range finders too."""
 RANGE_FINDERS = 6
 """The most range finders that the JSON interface knows."""
-_IMU = "imu"
-"""Name of the site whose frame the autopilot has."""
 
 
 class Reading(NamedTuple):
@@ -76,6 +68,7 @@ class Readings:
         self._felt = np.zeros(3)
         self._steps = 0
         self._finders = _find_range_finders(model, vehicle)
+        self._battery = Battery(model, vehicle)
 
     def feel(self) -> None:
         """Take the specific force of the step that was just made."""
@@ -126,30 +119,13 @@ class Readings:
             distances=tuple(
                 d if d >= 0.0 else FAR for d in data.sensordata[self._finders].tolist()
             ),
+            battery=self._battery.read(self._source),
         )
 
 
 def _plain(numbers: NDArray[np.float64]) -> tuple[float, ...]:
     """Numbers (n,) of Python, whose text is JSON."""
     return tuple(numbers.tolist())
-
-
-def find_imu(model: mujoco.MjModel, vehicle: Vehicle) -> tuple[int, int]:
-    """The kind and the index of what bears a vehicle's autopilot: its site `imu`, or its root."""
-    for site in range(model.nsite):
-        name = str(model.site(site).name).rsplit("/", 1)[-1]
-        if name == _IMU and model.site_bodyid[site] in vehicle.bodies:
-            return int(mujoco.mjtObj.mjOBJ_SITE), site
-    return int(mujoco.mjtObj.mjOBJ_XBODY), vehicle.root
-
-
-def imu_pose(
-    data: mujoco.MjData, kind: int, index: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Place (3,) [m] and rotation world_from_imu (9,) of what `find_imu` found."""
-    if kind == mujoco.mjtObj.mjOBJ_SITE:
-        return data.site_xpos[index], data.site_xmat[index]
-    return data.xpos[index], data.xmat[index]
 
 
 def _find_range_finders(model: mujoco.MjModel, vehicle: Vehicle) -> NDArray[np.int64]:

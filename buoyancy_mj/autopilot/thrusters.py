@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.autopilot.readings import HALF_TURN, find_imu, imu_pose
+from buoyancy_mj.autopilot.imu import HALF_TURN, find_imu, imu_pose
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.vehicle.channels import actuator_name
 

@@ -114,7 +114,7 @@ def sitl(
         while starts == 0 or packet is not None:
             starts += 1
             with err.status("preparing"):
-                session = _prepare(plan, chosen, autopilot)
+                session = _prepare(plan, chosen, autopilot, trust=flags.trust)
             if packet is None:
                 packet = _wait(link, autopilot)
             else:
@@ -141,14 +141,19 @@ def _read_plan(
         plan = read_scene(path, [*flags.overrides(), *selection.overrides()])
     if plan.vehicles:
         _check_choice(chosen, [str(entry.name) for entry in plan.vehicles])
+    # what steered the vehicle in the scene gives way
+    others = tuple(one for one in plan.control if one.vehicle not in (None, chosen))
+    if len(others) < len(plan.control):
+        print_line(err, "note: the scene's [control] of this vehicle rests", style="yellow")
+        plan = dataclasses.replace(plan, control=others)
     if rate is not None:
         plan = dataclasses.replace(plan, timestep=fit_timestep(rate, plan.timestep))
     return plan, chosen
 
 
-def _prepare(plan: Scene, chosen: str | None, autopilot: AutopilotFlags) -> Session:
+def _prepare(plan: Scene, chosen: str | None, autopilot: AutopilotFlags, *, trust: bool) -> Session:
     """A simulation at its start, with the outputs of the autopilot connected."""
-    simulation = Simulation(plan)
+    simulation = Simulation(plan, trust=trust)
     _check_choice(chosen, simulation.vehicles)
     vehicle = simulation.vehicle if chosen is None else simulation.vehicles[chosen]
     model = simulation.model
