@@ -1,4 +1,4 @@
-"""An autopilot drives a vehicle: the physics behind ArduPilot's JSON interface.
+"""An autopilot drives a vehicle.
 
 In: servo pulses in packets, and a simulation.
 Out: what the autopilot's sensors would tell, one line of JSON for each packet.
