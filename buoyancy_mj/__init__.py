@@ -73,7 +73,6 @@ from buoyancy_mj.submersion.exact import Exact as Exact
 from buoyancy_mj.submersion.sections import Sections as Sections
 from buoyancy_mj.submersion.submerge import Submersion as Submersion
 from buoyancy_mj.submersion.submerge import submerge as submerge
-from buoyancy_mj.vehicle import sensors as _sensors  # noqa: F401 - registers its plugins
 from buoyancy_mj.vehicle.allocation import Allocation as Allocation
 from buoyancy_mj.vehicle.allocation import allocation as allocation
 from buoyancy_mj.vehicle.control.controller import Control as Control
@@ -85,6 +84,17 @@ from buoyancy_mj.vehicle.control.keyframes import Keyframes as Keyframes
 from buoyancy_mj.vehicle.control.lqr import Lqr as Lqr
 from buoyancy_mj.vehicle.control.motion import ControlSensors as ControlSensors
 from buoyancy_mj.vehicle.control.program import Program as Program
+from buoyancy_mj.vehicle.sensors.adding import add_sensor as add_sensor
+from buoyancy_mj.vehicle.sensors.adding import find_streams as find_streams
+from buoyancy_mj.vehicle.sensors.altimeter import Altimeter as Altimeter
+from buoyancy_mj.vehicle.sensors.dvl import Dvl as Dvl
+from buoyancy_mj.vehicle.sensors.hydrophone import Hydrophone as Hydrophone
+from buoyancy_mj.vehicle.sensors.pressure import Pressure as Pressure
+from buoyancy_mj.vehicle.sensors.surface import Depth as Depth
+from buoyancy_mj.vehicle.sensors.surface import Elevation as Elevation
+from buoyancy_mj.vehicle.sensors.surface import Wet as Wet
+from buoyancy_mj.vehicle.sensors.velocities import SpeedThroughWater as SpeedThroughWater
+from buoyancy_mj.vehicle.sensors.velocities import WaterVelocity as WaterVelocity
 from buoyancy_mj.vehicle.thruster import Thruster as Thruster
 from buoyancy_mj.vehicle.thrusters import ThrusterReading as ThrusterReading
 from buoyancy_mj.vehicle.thrusters import add_thruster as add_thruster

@@ -194,8 +194,13 @@ def test_the_ahead_keyframe_drives_ahead():
 
 
 def test_the_auv_senses_its_depth_and_attitude():
-    _, data, _, _ = auv_under_water()
-    assert data.sensor("depth").data[2] == pytest.approx(-2.0 + 0.04)
+    model, data, buoyancy, _ = auv_under_water()
+    with buoyancy.installed():
+        mujoco.mj_forward(model, data)
+    # of noise no more than five standard deviations
+    assert data.sensor("depth").data[0] == pytest.approx(2.0 - 0.04, abs=5 * 0.005)
+    gauge = 1000.0 * 9.81 * (2.0 - 0.04)
+    assert data.sensor("pressure").data[0] == pytest.approx(gauge, abs=5 * 50.0)
     assert data.sensor("attitude").data == pytest.approx([1, 0, 0, 0], abs=1e-9)
     assert data.sensor("gyro").data == pytest.approx(np.zeros(3), abs=1e-9)
     assert data.sensor("accelerometer").data[2] == pytest.approx(data.qacc[2] + 9.81, abs=1e-6)

@@ -5,7 +5,7 @@ a sensor states in its own element have none, and all that are added after them 
 MJCF saved from the spec.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import mujoco
@@ -27,6 +27,23 @@ def name_instances(spec: mujoco.MjSpec) -> None:
         taken.add(name)
         plugin.name, plugin.plugin_name, plugin.active = name, element.plugin.plugin_name, True
         element.plugin.name = name
+
+
+def add_instance(spec: mujoco.MjSpec, element: Any, plugin: str, config: Mapping[str, str]) -> None:
+    """Give an actuator or a sensor of a spec a plugin instance of its own, under its own name.
+
+    Args:
+        spec: the model.
+        element: the actuator or sensor.
+        plugin: name of the plugin.
+        config: its keys.
+    """
+    name_instances(spec)
+    name = _find_free_name(element.name, {other.name for other in spec.plugins})
+    spec.activate_plugin(plugin)
+    instance = spec.add_plugin(name=name, plugin_name=plugin, active=True)
+    instance.config = dict(config)
+    element.plugin.active, element.plugin.plugin_name, element.plugin.name = True, plugin, name
 
 
 def _find_owner(spec: mujoco.MjSpec, plugin: Any) -> Any:

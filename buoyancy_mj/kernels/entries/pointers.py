@@ -34,6 +34,20 @@ def call(typing, function, words):
 
 
 @intrinsic
+def call_number(typing, function, words):
+    """Call the C function at an address with a tuple of words; it returns a double."""
+    count = len(words)
+
+    def code(context, builder, signature, args):
+        word = ir.IntType(64)
+        kind = ir.FunctionType(ir.DoubleType(), [word] * count)
+        values = [builder.extract_value(args[1], n) for n in range(count)]
+        return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
+
+    return types.float64(types.int64, types.UniTuple(types.int64, count)), code
+
+
+@intrinsic
 def exchange(typing, address, value):
     """Set the word at an address at one go with all threads; what it was."""
 

@@ -67,3 +67,25 @@ class Equipment(NamedTuple):
     sensing: Sensing
     qfrc_passive: Annotated[Doubles, "mjData", ("nv",)]
     """Generalized passive forces."""
+
+
+class Motions(NamedTuple):
+    """How bodies move: what `motion.find_velocity` reads of `multibody.Bodies`."""
+
+    body_rootid: Annotated[Int32s, "mjModel", ("nbody",)]
+    """Root of the kinematic tree of each."""
+    subtree_com: Annotated[Doubles, "mjData", ("nbody", 3)]
+    """Centre of mass of each and all below it [m]."""
+    cvel: Annotated[Doubles, "mjData", ("nbody", 6)]
+    """Rotation [rad/s], then translation [m/s] at the root's centre of mass."""
+
+
+class SensorEquipment(NamedTuple):
+    """The part of `Equipment` that a sensor reads and writes to; the less, the faster compiled."""
+
+    option: Option
+    time: Annotated[float, "mjData"]
+    """[s]."""
+    bodies: Motions
+    sites: Sites
+    sensing: Sensing
