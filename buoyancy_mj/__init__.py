@@ -15,6 +15,7 @@ from buoyancy_mj.environments.sauvc.mission import Mission as Mission
 from buoyancy_mj.environments.sauvc.mission import mission as mission
 from buoyancy_mj.environments.sauvc.report import Event as Event
 from buoyancy_mj.environments.sauvc.report import MissionReport as MissionReport
+from buoyancy_mj.errors import AutopilotError as AutopilotError
 from buoyancy_mj.errors import BallastError as BallastError
 from buoyancy_mj.errors import BuoyancyError as BuoyancyError
 from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning

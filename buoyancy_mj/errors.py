@@ -68,6 +68,10 @@ class RecordingError(BuoyancyError):
     """A recording that cannot be written to its end."""
 
 
+class AutopilotError(BuoyancyError):
+    """An autopilot that cannot be served: who it is, what it drives, or what it asks for."""
+
+
 class BuoyancyWarning(UserWarning):
     """A repair, an omission or a doubt that the user should know of."""
 

@@ -186,10 +186,11 @@ def understand(command, *words):
         listed = CliRunner().invoke(app, [command, "--only", "none"]).output
         assert set(parsed.params["only"] or ()) <= set(re.findall(r"\w+", listed))
         return
-    if command == "view":
+    if command in ("view", "sitl"):
         return
     if command == "run":
-        words = [word for word in words if word != "--live"] + ["--duration", "0.05"]
+        shown = ("--live", "--foxglove")
+        words = [word for word in words if word not in shown] + ["--duration", "0.05"]
     elif command == "sweep":
         words = [re.sub(r":\d$", ":1", word) for word in words] + ["--duration", "0.02"]
         if "--draws" in words:

@@ -613,7 +613,7 @@ def test_the_draft_is_the_depth_of_the_deepest_of_all_vertices(scene):
     for time in rng.uniform(0.0, 60.0, 8):
         data.time = time
         data.qpos[:7] = [*rng.uniform(-9.0, 9.0, 2), rng.uniform(-1.0, 0.5), *rng.normal(size=4)]
-        frame = simulation._frame()
+        frame = simulation.frame()
         depths = [
             water.depth(
                 hull.mesh.vertices @ frame.data.geom_xmat[hull.geom].reshape(3, 3).T

@@ -73,7 +73,7 @@ def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
         alone = Simulation(read_scene(wanted.path, [*wanted.settings, *settings]))
         for _ in range(alone.steps):
             alone.step()
-        alone._frame()
+        alone.frame()
         summary = alone.summary().values()
         for name in (
             "mass",

@@ -12,6 +12,8 @@ from buoyancy_mj.cli import inspections as inspections  # isort: split
 
 from buoyancy_mj.cli import ballasts as ballasts  # isort: split
 
+from buoyancy_mj.cli import autopilots as autopilots  # isort: split
+
 from buoyancy_mj.cli import sweeps as sweeps  # isort: split
 
 from buoyancy_mj.cli import papers as papers  # isort: split

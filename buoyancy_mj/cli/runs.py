@@ -1,18 +1,15 @@
 """`run`, `view` and `list`: one scene at a time."""
 
-import dataclasses
-import json
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 from rich.progress import TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import err, out, print_line, show_progress, viewer_command
+from buoyancy_mj.cli.console import err, out, show_progress
 from buoyancy_mj.cli.flags import (
     Json,
     RunFlags,
@@ -22,15 +19,14 @@ from buoyancy_mj.cli.flags import (
     check_recording_name,
     check_table_name,
 )
+from buoyancy_mj.cli.recordings import Files, Recordings, StreamFlags
 from buoyancy_mj.cli.signals import raise_received
-from buoyancy_mj.environments.sauvc.report import MissionReport
-from buoyancy_mj.errors import RecordingError, SceneError
+from buoyancy_mj.cli.summaries import mission_table, print_files, summary_json, summary_table
+from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
-from buoyancy_mj.scenes.summary import Summary
-from buoyancy_mj.viz.sinks import open_sinks
 
 
 @command()
@@ -38,6 +34,7 @@ def run(
     scene: SceneArgument,
     flags: RunFlags,
     selection: SelectionFlags,
+    streams: StreamFlags,
     record: Annotated[
         Path | None, typer.Option(help="Record to this file instead of recordings/NAME.rrd.")
     ] = None,
@@ -74,21 +71,20 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through, trust=flags.trust)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    recording, table = _run_to_end(simulation, target, series, live=live)
+    recordings = Recordings(simulation, target, series, live=live, streams=streams, paced=True)
+    files = _run_to_end(simulation, recordings)
 
     # its summary
     summary = simulation.summary()
     report = simulation.mission.report if simulation.mission else None
     if as_json:
-        typer.echo(_to_json(summary, recording, table, report))
+        others = {"mission": report.values()} if report else None
+        typer.echo(summary_json(summary, files, others))
         return
-    out.print(_to_table(summary))
+    out.print(summary_table(summary))
     if report is not None:
-        out.print(_to_mission_table(report))
-    if recording is not None:
-        print_line(out, f"open the recording: {viewer_command(recording)}")
-    if table is not None:
-        print_line(out, f"the series is in '{table}'")
+        out.print(mission_table(report))
+    print_files(files)
 
 
 @command("list")
@@ -115,97 +111,24 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
     view_simulation(Simulation(read, trust=flags.trust))
 
 
-def _run_to_end(
-    simulation: Simulation, target: Path | None, series: Path | None, *, live: bool
-) -> tuple[Path | None, Path | None]:
-    """Run to the end; record to a file, to a live viewer, to a table, or to several of them.
-
-    Returns:
-        Where the recording and the table are.
-    """
-    recording, table = open_sinks(simulation, target, series, live=live)
+def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
+    """Run to the end, and record; the files."""
     try:
-        _run_frames(simulation, [sink.add for sink in (recording, table) if sink is not None])
-        return (
-            recording.close(simulation.summary()) if recording is not None else None,
-            table.close() if table is not None else None,
-        )
+        recordings.wait_for_viewer()
+        _run_frames(simulation, recordings.add)
+        return recordings.close(simulation.summary())
     except BaseException:
         # whatever ends the run, what was recorded stays
-        if recording is not None and not recording.closed:
-            summary = simulation.summary()
-            _keep_partial("recording", simulation, lambda: recording.close(summary, complete=False))
-        if table is not None and not table.closed:
-            _keep_partial("series", simulation, lambda: table.close(complete=False))
+        recordings.keep(simulation.summary)
         raise
 
 
-def _keep_partial(what: str, simulation: Simulation, close: Callable[[], Path | None]) -> None:
-    """Close a recording or a table that broke off, and say where it is."""
-    try:
-        partial = close()
-    except RecordingError as error:
-        print_line(err, f"note: {error}", style="yellow")
-    else:
-        if partial is not None:
-            time = simulation.data.time
-            print_line(err, f"the {what} up to {time:.2f} s is in '{partial}'")
-
-
-def _run_frames(simulation: Simulation, sinks: Sequence[Callable[[Frame], None]]) -> None:
-    """Run to the end, handing each frame to all `sinks`, and show the simulated time."""
+def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
+    """Run to the end, calling `add` with each frame, and show the simulated time."""
     scene = simulation.scene
     columns = TextColumn("{task.completed:.1f} of {task.total:.1f} s"), TimeRemainingColumn()
     with show_progress(scene.title, scene.duration, *columns) as update:
         for frame in simulation.frames():
             raise_received()
-            for add in sinks:
-                add(frame)
+            add(frame)
             update(completed=frame.time)
-
-
-def _to_table(summary: Summary) -> Table:
-    """A summary as a table, with a column for each of several vehicles."""
-    several = len(summary.vehicles) > 1
-    table = Table(title=summary.scene, show_header=several, title_justify="left")
-    for name in ("", *summary.vehicles):
-        table.add_column(name)
-    for row in summary.rows():
-        table.add_row(*row)
-    if several:
-        table.caption = summary.caption
-        table.caption_justify = "left"
-    return table
-
-
-def _to_mission_table(report: MissionReport) -> Table:
-    """What a referee has seen, as a table."""
-    table = Table(title=f"mission: {report.task}", show_header=False, title_justify="left")
-    for row in report.rows():
-        table.add_row(*row)
-    return table
-
-
-def _to_json(
-    summary: Summary, recording: Path | None, table: Path | None, report: MissionReport | None
-) -> str:
-    """A summary, the paths of its files and what a referee has seen, as JSON.
-
-    JSON knows finite numbers only.
-    """
-    values: dict[str, Any] = summary.values()
-    if len(summary.vehicles) > 1:
-        # a table for each vehicle, in place of names with dots
-        values = dataclasses.asdict(summary)
-    for name, path in (("recording", recording), ("series", table)):
-        values[name] = str(path) if path else None
-    if report is not None:
-        values |= {"mission": report.values()}
-    return json.dumps(_drop_infinite(values), indent=2)
-
-
-def _drop_infinite(value: Any) -> Any:
-    """The same values, but None for each number that is not finite."""
-    if isinstance(value, dict):
-        return {key: _drop_infinite(item) for key, item in value.items()}
-    return None if isinstance(value, float) and not math.isfinite(value) else value

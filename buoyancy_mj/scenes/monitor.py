@@ -1,6 +1,7 @@
 """`Monitor`: what the summary of a run keeps of its steps."""
 
 import math
+from array import array
 from collections.abc import Sequence
 
 import mujoco
@@ -38,7 +39,8 @@ class Monitor:
         amplitude, kx, ky, *_ = water.rows.T
         self._curvature = float(np.abs(amplitude) @ (kx * kx + ky * ky))
         self._vehicle = vehicle
-        self._heights: list[tuple[float, float]] = []
+        self._times = array("d")
+        self._heights = array("d")
 
         # the deepest point of a body is a corner of one of its convex hulls
         hulls = vehicle.hulls
@@ -61,7 +63,8 @@ class Monitor:
         self.peak_draft = max(self.peak_draft, self.draft)
         vehicle = self._vehicle
         height = vehicle.masses @ poses.xipos[vehicle.bodies, 2] / vehicle.mass
-        self._heights.append((time, float(height)))
+        self._times.append(time)
+        self._heights.append(float(height))
 
     def _find_deep_corners(self, poses: Poses, time: float) -> NDArray[np.float64]:
         """Corners (n, 3) [m] in the world frame that can be deepest at a time [s], few of all.
@@ -120,8 +123,9 @@ class Monitor:
 
     def height_range(self, start: float) -> float:
         """Highest less lowest centre of gravity [m] from a time [s] on; NaN without poses."""
-        heights = [height for time, height in self._heights if time >= start - 1e-9]
-        return max(heights) - min(heights) if heights else math.nan
+        late = np.frombuffer(self._times) >= start - 1e-9
+        heights = np.frombuffer(self._heights)[late]
+        return float(np.ptp(heights)) if len(heights) else math.nan
 
 
 def _convex_corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:

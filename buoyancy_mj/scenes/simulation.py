@@ -156,7 +156,7 @@ class Simulation(ReadOnly):
                 reason: see `Limits`.
         """
         started = time.perf_counter()
-        yield self._frame()
+        yield self.frame()
         recorded = 0
         for step in range(1, self.steps + 1):
             self.step()
@@ -164,7 +164,7 @@ class Simulation(ReadOnly):
             due = math.floor(step * self.scene.timestep * self.scene.record_rate + 1e-9)
             if due > recorded or step == self.steps:
                 recorded = due
-                frame = self._frame()
+                frame = self.frame()
                 self._wall_time = time.perf_counter() - started
                 yield frame
         self._wall_time = time.perf_counter() - started
@@ -228,6 +228,15 @@ class Simulation(ReadOnly):
             monitor.add_poses(poses, float(self.data.time))
         self._wall_time = wall_time
 
+    def frame(self) -> Frame:
+        """The present, computed beside the run, which goes on as it would without.
+
+        Raises:
+            DivergenceError: a position, velocity or acceleration left the finite numbers, or all
+                reason: see `Limits`.
+        """
+        return self._source.take(self.data, self._forward)
+
     def summary(self) -> Summary:
         """Sum up the run so far."""
         end = float(self.data.time)
@@ -259,10 +268,6 @@ class Simulation(ReadOnly):
             vehicle=body_name(self.model, self.vehicle.root),
             water=self.buoyancy.water,
         )
-
-    def _frame(self) -> Frame:
-        """The present."""
-        return self._source.take(self.data, self._forward)
 
     def _forward(self, data: mujoco.MjData) -> None:
         """A pass over the data of a frame, which may have left all reason."""
