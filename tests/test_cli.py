@@ -267,7 +267,7 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
     assert process.returncode == 128 + sent
     assert re.search(r"the recording up to .* s is in 'out.rrd'", told), told
     assert "Traceback" not in told
-    verify = [sys.executable, "-m", "rerun", "rrd", "verify", str(tmp_path / "out.rrd")]
+    verify = [sys.executable, "-m", "rerun_cli", "rrd", "verify", str(tmp_path / "out.rrd")]
     assert subprocess.run(verify, capture_output=True, check=False).returncode == 0
 
 

@@ -567,16 +567,17 @@ def test_partial_files_take_names_that_nobody_has(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["report.md", "hourglass_curves.png"])
-def test_plots_replace_their_own_files_only(here, tmp_path, name):
-    (tmp_path / name).write_text("precious")
-    result = here("inspect", "hourglass", "--plot", ".")
-    assert result.exit_code == 1
-    assert result.stderr == (
-        f"error: cannot write '{name}': there is a file which was not made here; "
-        "choose another folder (--plot)\n"
-    )
-    assert (tmp_path / name).read_text() == "precious"
+def test_plots_replace_their_own_files_only(here, tmp_path):
+    for name in ("report.md", "hourglass_curves.png"):
+        (tmp_path / name).write_text("precious")
+        result = here("inspect", "hourglass", "--plot", ".")
+        assert result.exit_code == 1
+        assert result.stderr == (
+            f"error: cannot write '{name}': there is a file which was not made here; "
+            "choose another folder (--plot)\n"
+        )
+        assert (tmp_path / name).read_text() == "precious"
+        (tmp_path / name).unlink()
     for _ in range(2):
         assert here("inspect", "hourglass", "--plot", "plots").exit_code == 0
 

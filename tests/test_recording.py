@@ -26,7 +26,7 @@ SHORT = ["duration=0.5", "record_rate=30"]
 
 def rerun(*arguments):
     return subprocess.run(
-        [sys.executable, "-m", "rerun", "rrd", *arguments],
+        [sys.executable, "-m", "rerun_cli", "rrd", *arguments],
         capture_output=True,
         text=True,
         check=False,
@@ -148,7 +148,7 @@ def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
         command, cwd=tmp_path, stderr=subprocess.DEVNULL, start_new_session=True
     )
     partial = tmp_path / "run.partial.rrd"
-    while not (partial.exists() and partial.stat().st_size > 4_000_000):
+    while not (partial.exists() and partial.stat().st_size > 2_000_000):
         assert process.poll() is None
         time.sleep(0.1)
     process.kill()
@@ -295,12 +295,9 @@ def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
     assert ("/world/environment/environment/floor_west" in found) == (scene == "auv_pool")
 
 
-@pytest.mark.parametrize("method", ["convex_hull", "sections"])
-def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_the_forces(
-    tmp_path, method
-):
+def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_the_forces(tmp_path):
     found = []
-    for chosen in ("exact", method):
+    for chosen in ("exact", "convex_hull", "sections"):
         simulation = Simulation(
             read_scene(catalog.scenes()["auv_waves"], [f"method={chosen}", "duration=0.01"])
         )
@@ -312,9 +309,10 @@ def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_t
         assert "/world/waterline" in entities(
             rerun("print", "-vv", str(tmp_path / f"{chosen}.rrd")).stdout
         )
-    exact, other = found
-    assert exact.keys() == other.keys()
-    assert all((exact[geom] == other[geom]).all() for geom in exact)
+    exact, *others = found
+    for other in others:
+        assert exact.keys() == other.keys()
+        assert all((exact[geom] == other[geom]).all() for geom in exact)
 
 
 def test_names_may_hold_anything(tmp_path):

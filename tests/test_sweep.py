@@ -171,6 +171,8 @@ def test_a_sweep_that_is_killed_goes_on(tmp_path):
         *over,
         "--out",
         str(out),
+        "--duration",
+        "1",
     ]
     running = subprocess.Popen(command)
     while not out.exists() or len(out.read_bytes().splitlines()) < 3:

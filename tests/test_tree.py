@@ -197,13 +197,15 @@ def test_any_tolerance_is_kept(seed, height, tolerance, name):
     pose = place(mesh, seed, height)
     rough, fine = (
         exact.PackedHulls(HullSet([mesh]), WAVES, t).submerge(*pose, 0.0)[0]
-        for t in (tolerance, tolerance / 100)
+        for t in (tolerance, tolerance / 20)
     )
-    assert rough[0] == pytest.approx(fine[0], abs=tolerance * mesh.volume)
+    # beside a twentieth of it, which the finer one may be off by itself
+    slack = 0.95 * tolerance * mesh.volume
+    assert rough[0] == pytest.approx(fine[0], abs=slack)
     middle = pose[0][0] + pose[1].reshape(3, 3) @ mesh.bounds.mean(axis=0)
     if fine[0] > 0.0 and rough[0] > 0.0:
         moments = [row[0] * (row[clip.CENTROID] - middle) for row in (rough, fine)]
-        assert moments[0] == pytest.approx(moments[1], abs=tolerance * mesh.volume * mesh.radius)
+        assert moments[0] == pytest.approx(moments[1], abs=slack * mesh.radius)
 
 
 @pytest.mark.parametrize("tilt", [0.0, 1e-4, 1e-2])

@@ -50,6 +50,15 @@ def directed_edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
 
 
+def undirected_edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Each edge (k, 2) of faces (m, 3) once, its lower vertex first, in the order of vertices."""
+    edges = directed_edges(faces)
+    # one number for each pair of vertices
+    count = int(faces.max()) + 1
+    pairs = np.unique(edges.min(axis=1) * count + edges.max(axis=1))
+    return np.column_stack([pairs // count, pairs % count])
+
+
 def boundary_edges(faces: NDArray[np.int64]) -> NDArray[np.int64]:
     """Directed edges (k, 2) that no reverse edge cancels; a closed surface has none."""
     edges = directed_edges(faces)

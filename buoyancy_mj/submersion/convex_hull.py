@@ -13,10 +13,10 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-from trimesh.geometry import faces_to_edges
 
 from buoyancy_mj.errors import MethodError, choices, describe
 from buoyancy_mj.kernels import clip, slices
+from buoyancy_mj.meshes.surface import undirected_edges
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.hull_set import HullSet, submerge_each
 from buoyancy_mj.submersion.quickhull import hull_moments
@@ -125,7 +125,7 @@ class PackedConvexHulls:
         self._vertices = [vertices for vertices, _ in meshes]
         self._edges = []
         if method.cut:
-            self._edges = [np.unique(np.sort(faces_to_edges(faces)), axis=0) for _, faces in meshes]
+            self._edges = [undirected_edges(faces) for _, faces in meshes]
 
         # every vertex in turn, the length of the hulls, and room for the vertices of one
         self._all = [np.arange(len(vertices)) for vertices in self._vertices]

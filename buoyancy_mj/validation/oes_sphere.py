@@ -165,7 +165,7 @@ def response(pressure: str) -> tuple[float, ...]:
     responses = []
     for wave_period in PERIODS:
         times, heights = follow(
-            _load_sphere(0.1),
+            _load_sphere(wave_period / 40.0),
             Water(waves=RegularWave(0.05, period=wave_period)),
             24.0 * wave_period,
             read=lambda data: float(data.qpos[2]),

@@ -139,9 +139,10 @@ def _add_footer(path: Path) -> None:
         tempfile.TemporaryDirectory(prefix=".", dir=path.parent) as folder,
     ):
         whole = Path(folder, "whole.rrd")
-        # in an empty folder: Python imports nothing from where the user works
+        # in an empty folder: Python imports nothing from where the user works; the command alone,
+        # without the whole of rerun, which takes half a second to import
         subprocess.run(
-            [sys.executable, "-P", "-m", "rerun", "rrd", "optimize", path, "-o", whole],
+            [sys.executable, "-P", "-m", "rerun_cli", "rrd", "optimize", path, "-o", whole],
             cwd=folder, capture_output=True, check=True, stdin=subprocess.DEVNULL,
         )  # fmt: skip
         shutil.copymode(path, whole)

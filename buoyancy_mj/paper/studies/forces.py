@@ -27,6 +27,7 @@ def measure_force(quick: bool) -> Result:
     mesh = solids.hourglass()
     dz, positions = solids.immersions(21 if quick else 81)
     tilted = load_scene("hourglass_drop_still")
+    tilted = dataclasses.replace(tilted, duration=1.5 if quick else tilted.duration)
     upright = dataclasses.replace(tilted, start=Start(position=(0.0, 0.0, 0.35)))
 
     exact = SPECIFIC_WEIGHT * solids.hourglass_volume(dz, solids.SIDES)
@@ -90,7 +91,7 @@ def measure_distributed(quick: bool) -> Result:
     table = _forces_at_rest(1.0 if quick else 20.0)
 
     # what the joint feels at each step of a run on waves, by all methods
-    scene = dataclasses.replace(load_scene("auv_waves"), duration=0.5 if quick else 5.0)
+    scene = dataclasses.replace(load_scene("auv_waves"), duration=0.2 if quick else 5.0)
     difference = largest = 0.0
     for method in BASIC_METHODS.values():
         for step in run_steps(scene, method):
@@ -161,7 +162,7 @@ def _joint_forces(
 
 def measure_rest(quick: bool) -> Result:
     """Measure the force once a drop on still water has come to rest."""
-    duration = 5.0 if quick else 60.0
+    duration = 3.2 if quick else 60.0
     tables: dict[str, dict[str, Column]] = {}
     late: dict[str, float] = {}
     early: dict[str, float] = {}

@@ -28,7 +28,7 @@ def measure_cog(quick: bool) -> Result:
         columns: dict[str, NDArray[np.float64]] = {}
         for surface, water in SURFACES.items():
             scene = load_scene(name)
-            scene = dataclasses.replace(scene, water=water, duration=1.0 if quick else 5.0)
+            scene = dataclasses.replace(scene, water=water, duration=0.5 if quick else 5.0)
             for label, method in BASIC_METHODS.items():
                 moments = list(run(scene, method))
                 columns.setdefault("time [s]", np.array([m.time for m in moments]))
