@@ -104,10 +104,8 @@ def test_over_a_slope_the_velocity_is_as_true():
     assert np.allclose(velocity, rotation.T @ true, rtol=0, atol=1e-9)
 
 
-AHEAD_TO_STARBOARD, ASTERN = (
-    '<geom type="box" size="3 3 .1" pos="3.2 -2.9 -6"/>',
-    ('<geom type="box" size="3 6 .1" pos="-2.8 0.1 -6"/>'),
-)
+ASTERN = '<geom type="box" size="3 6 .1" pos="-2.8 0.1 -6"/>'
+AHEAD_TO_STARBOARD = '<geom type="box" size="3 3 .1" pos="3.2 -2.9 -6"/>'
 
 
 @pytest.mark.parametrize("tables", [ASTERN + AHEAD_TO_STARBOARD, ASTERN])

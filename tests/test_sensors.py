@@ -357,3 +357,13 @@ def test_mjcf_that_makes_no_sense_is_a_compile_error(rest, message):
     with pytest.raises(ValueError, match=r"sensor|attribute") as caught:
         mujoco.MjModel.from_xml_string(PLUGIN.format(rest))
     assert message in str(caught.value)
+
+
+def test_two_sensors_that_share_an_instance_are_refused():
+    mjcf = PLUGIN.format(
+        'instance="i" objtype="site" objname="s"></plugin><plugin name="e" '
+        'plugin="buoyancy_mj.depth" instance="i" objtype="site" objname="s">'
+    ).replace('"buoyancy_mj.depth"/>', '"buoyancy_mj.depth"><instance name="i"/></plugin>')
+    message = "instance 'i' of buoyancy_mj.depth has 2 sensors: d, e; give each sensor one of its"
+    with pytest.raises(ValueError, match=message):
+        mujoco.MjModel.from_xml_string(mjcf)
