@@ -190,6 +190,15 @@ def test_an_altimeter_out_of_range_or_of_the_water_is_lost():
         assert place(build(sensor), height=height).sensor("altimeter").data[0] == -1.0
 
 
+def test_an_altimeter_that_is_fixed_to_the_world_sees_the_world():
+    spec = mujoco.MjSpec.from_string(
+        f'<mujoco><worldbody>{FLOOR}<site name="pier" pos="9 0 -1"/>{VEHICLE}</worldbody></mujoco>'
+    )
+    add_water(spec, Water())
+    add_sensor(spec, "pier", Altimeter())
+    assert place(spec.compile()).sensor("altimeter").data[0] == pytest.approx(7.0, abs=1e-12)
+
+
 @pytest.mark.parametrize("height", [-3.0, 3.0])
 def test_an_altimeter_may_see_the_surface_of_waves_from_both_sides(height):
     water = Water(waves=RegularWave(0.4, period=2.5))

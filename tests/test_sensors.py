@@ -22,6 +22,7 @@ from buoyancy_mj import (
     add_water,
     find_streams,
 )
+from buoyancy_mj.vehicle.sensors.kinds import CHANNELS
 from buoyancy_mj.vehicle.sensors.texts import format_sensor, list_keys, parse_sensor
 
 SEA = Water(density=1025.0, level=0.5, waves=RegularWave(0.3, period=4.0), current=(0.4, -0.2, 0.0))
@@ -278,6 +279,13 @@ def test_batches_read_what_single_runs_read_and_streams_part_them(everything):
     assert (batched[:3] == read).all()
     assert (batched[3] != read).sum() > 8
     assert (batched[3] == run(model, 15, stream=5)[-1]).all()
+
+
+def test_each_sensor_has_as_many_numbers_as_channels(everything):
+    model = everything.compile()
+    for sensor in EVERYTHING:
+        name = sensor.KIND.plugin.partition(".")[2]
+        assert model.sensor(name).dim == len(CHANNELS[sensor.KIND.plugin])
 
 
 def test_settings_become_texts_and_settings_again():
