@@ -104,10 +104,8 @@ def test_over_a_slope_the_velocity_is_as_true():
     assert np.allclose(velocity, rotation.T @ true, rtol=0, atol=1e-9)
 
 
-AHEAD_TO_STARBOARD, ASTERN = (
-    '<geom type="box" size="3 3 .1" pos="3.2 -2.9 -6"/>',
-    ('<geom type="box" size="3 6 .1" pos="-2.8 0.1 -6"/>'),
-)
+ASTERN = '<geom type="box" size="3 6 .1" pos="-2.8 0.1 -6"/>'
+AHEAD_TO_STARBOARD = '<geom type="box" size="3 3 .1" pos="3.2 -2.9 -6"/>'
 
 
 @pytest.mark.parametrize("tables", [ASTERN + AHEAD_TO_STARBOARD, ASTERN])
@@ -190,6 +188,15 @@ def test_an_altimeter_reads_the_range_below_its_site():
 def test_an_altimeter_out_of_range_or_of_the_water_is_lost():
     for sensor, height in ((Altimeter(max_range=3.0), -3.0), (Altimeter(), 1.0)):
         assert place(build(sensor), height=height).sensor("altimeter").data[0] == -1.0
+
+
+def test_an_altimeter_that_is_fixed_to_the_world_sees_the_world():
+    spec = mujoco.MjSpec.from_string(
+        f'<mujoco><worldbody>{FLOOR}<site name="pier" pos="9 0 -1"/>{VEHICLE}</worldbody></mujoco>'
+    )
+    add_water(spec, Water())
+    add_sensor(spec, "pier", Altimeter())
+    assert place(spec.compile()).sensor("altimeter").data[0] == pytest.approx(7.0, abs=1e-12)
 
 
 @pytest.mark.parametrize("height", [-3.0, 3.0])

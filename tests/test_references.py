@@ -40,6 +40,20 @@ def test_a_whole_name_may_be_stated():
     assert model.site(find_named(model, SITE, "a/beacon", "b/dvl")).name == "a/beacon"
 
 
+@pytest.mark.parametrize("affixes", [{"prefix": "rov/"}, {"suffix": "_2"}])
+def test_what_was_attached_is_meant_by_what_was_attached(affixes):
+    child, parent = mujoco.MjSpec(), mujoco.MjSpec()
+    for name in ("dvl", "beacon"):
+        child.worldbody.add_site(name=name)
+    parent.worldbody.add_site(name="beacon")
+    parent.attach(child, frame=parent.worldbody.add_frame(), **affixes)
+    model = parent.compile()
+    # MuJoCo puts a slash before names that are to have a suffix alone
+    (owner,) = (model.site(i).name for i in range(3) if "dvl" in model.site(i).name)
+    found = model.site(find_named(model, SITE, "beacon", owner)).name
+    assert found == owner.replace("dvl", "beacon")
+
+
 @pytest.mark.parametrize("names", [("other/beacon",), ()])
 def test_what_is_not_there_is_an_error_that_says_what_is(names):
     model = named(*names)

@@ -22,6 +22,7 @@ from buoyancy_mj import (
     add_water,
     find_streams,
 )
+from buoyancy_mj.vehicle.sensors.kinds import CHANNELS
 from buoyancy_mj.vehicle.sensors.texts import format_sensor, list_keys, parse_sensor
 
 SEA = Water(density=1025.0, level=0.5, waves=RegularWave(0.3, period=4.0), current=(0.4, -0.2, 0.0))
@@ -280,6 +281,13 @@ def test_batches_read_what_single_runs_read_and_streams_part_them(everything):
     assert (batched[3] == run(model, 15, stream=5)[-1]).all()
 
 
+def test_each_sensor_has_as_many_numbers_as_channels(everything):
+    model = everything.compile()
+    for sensor in EVERYTHING:
+        name = sensor.KIND.plugin.partition(".")[2]
+        assert model.sensor(name).dim == len(CHANNELS[sensor.KIND.plugin])
+
+
 def test_settings_become_texts_and_settings_again():
     for sensor in (*EVERYTHING, *[type(sensor)() for sensor in EVERYTHING]):
         texts = {key: format_sensor(sensor).get(key, "") for key in list_keys(type(sensor))}
@@ -357,3 +365,13 @@ def test_mjcf_that_makes_no_sense_is_a_compile_error(rest, message):
     with pytest.raises(ValueError, match=r"sensor|attribute") as caught:
         mujoco.MjModel.from_xml_string(PLUGIN.format(rest))
     assert message in str(caught.value)
+
+
+def test_two_sensors_that_share_an_instance_are_refused():
+    mjcf = PLUGIN.format(
+        'instance="i" objtype="site" objname="s"></plugin><plugin name="e" '
+        'plugin="buoyancy_mj.depth" instance="i" objtype="site" objname="s">'
+    ).replace('"buoyancy_mj.depth"/>', '"buoyancy_mj.depth"><instance name="i"/></plugin>')
+    message = "instance 'i' of buoyancy_mj.depth has 2 sensors: d, e; give each sensor one of its"
+    with pytest.raises(ValueError, match=message):
+        mujoco.MjModel.from_xml_string(mjcf)

@@ -24,7 +24,8 @@ class Hydrophone(NoisySensor):
 
     The sound shows where the pinger was when it left, the pinger taken to move straight. Bearing is
     from x of the site towards y, to the left; elevation from there towards z. Range is travel time
-    times the speed of sound: pinger and hydrophone share a clock. Where either is in the air, or
+    times the speed of sound: pinger and hydrophone share a clock. A ping is read in the first step
+    after it has arrived. Where either is in the air, or
     before the first ping arrives, range and time are -1 and the angles NaN. Sound goes through
     everything: nothing shades the pinger, and nothing reflects it.
 

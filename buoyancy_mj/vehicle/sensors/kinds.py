@@ -20,6 +20,10 @@ Bind = Callable[[Device, Mount], Any]
 """Makes the NamedTuple of one sensor of one mjData, whose first fields these are."""
 
 
+CHANNELS: dict[str, tuple[tuple[str, str], ...]] = {}
+"""Name and unit of each number of the sensors of a plugin, by its name, see `Kind.channels`."""
+
+
 class Place(NamedTuple):
     """Where a sensor of a model is."""
 
@@ -63,6 +67,7 @@ def register_sensor(
             compute=compute,
         )
 
+    CHANNELS[cls.KIND.plugin] = cls.KIND.channels
     numbers = len(cls.KIND.channels)
     kind = DeviceKind(
         plugin=cls.KIND.plugin,
