@@ -117,12 +117,12 @@ def angles(poses):
 @pytest.mark.parametrize("vehicle", ["bluerov2_heavy", "sauvc_auv"])
 def test_a_station_is_kept_within_5_cm_and_3_degrees_in_waves_of_10_cm(vehicle):
     more = {"water": WAVES, "pressure": "froude-krylov", "added_mass": "ellipsoid"}
-    simulation = controlled({"kind": "hold"}, vehicle=vehicle, duration=20.0, **more)
+    simulation = controlled({"kind": "hold"}, vehicle=vehicle, duration=16.0, **more)
     late = run_out(simulation)[600:]
     assert np.linalg.norm(late[:, :3] - [0.0, 0.0, -1.0], axis=1).max() < 0.05
     assert np.degrees(np.abs(angles(late)).max()) < 3.0
     # the waves do pull: without the thrusters it goes round by as much as the water
-    adrift = run_out(controlled([], vehicle=vehicle, duration=6.0, **more))
+    adrift = run_out(controlled([], vehicle=vehicle, duration=3.5, **more))
     assert np.ptp(adrift[:, 0]) > 0.1
 
 
@@ -842,7 +842,7 @@ def test_a_controller_works_alike_where_the_water_is_a_callback():
     """There the rest is found on a model of its own, whose water is a part of it."""
     ends = []
     for through in ("qfrc_passive", "xfrc_applied"):
-        scene = read_scene(catalog.scenes()["bluerov2_heavy_station"], ["duration=1"])
+        scene = read_scene(catalog.scenes()["bluerov2_heavy_station"], ["duration=0.5"])
         simulation = Simulation(scene, through=through)
         ends.append(run_out(simulation)[-1])
     np.testing.assert_allclose(ends[1], ends[0], atol=1e-9)
