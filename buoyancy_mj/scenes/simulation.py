@@ -169,8 +169,12 @@ class Simulation(ReadOnly):
                 yield frame
         self._wall_time = time.perf_counter() - started
 
-    def step(self) -> None:
+    def step(self, *, watch: bool = True) -> None:
         """Take one timestep with the water acting, steered by the controllers that are due.
+
+        Args:
+            watch: whether the summary takes draft and height of this step, which costs as much as a
+                small model's step.
 
         Raises:
             ControlError: a controller raises, or gives what is no finite number.
@@ -188,7 +192,8 @@ class Simulation(ReadOnly):
         before = now - self.model.opt.timestep
         self._limits.check_data(self.data, before)
         for monitor in self._source.monitors.values():
-            monitor.add_poses(poses_of(self.data), before)
+            if watch:
+                monitor.add_poses(poses_of(self.data), before)
             monitor.add_contacts(self.data, now)
         if self.mission is not None:
             self.mission.update()
