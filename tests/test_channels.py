@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 from buoyancy_mj.vehicle import channels
-from buoyancy_mj.vehicle.channels import NAMES_AND_UNITS, describe_sensor
+from buoyancy_mj.vehicle.channels import describe_sensor
 from buoyancy_mj.vehicle.engine_sensors import Component
 from buoyancy_mj.vehicle.instruments import Instruments
+from buoyancy_mj.vehicle.sensors.kinds import CHANNELS
 
 MODEL = """<mujoco><extension><plugin plugin="mujoco.sensor.touch_grid"/></extension>
 <worldbody><geom name="floor" type="plane" size="1 1 1"/><site name="eye" pos="0 0 1"/>
@@ -109,15 +110,15 @@ def test_a_sensor_of_a_plugin_is_described_by_the_name_of_its_plugin(model, monk
     grid = model.sensor("grid").id
     assert describe_sensor(model, grid) == [("1", ""), ("2", "")]
     known = (Component("bow", "Pa"), Component("stern", "Pa"))
-    monkeypatch.setattr(channels, "NAMES_AND_UNITS", {"mujoco.sensor.touch_grid": known})
+    monkeypatch.setattr(channels, "CHANNELS", {"mujoco.sensor.touch_grid": known})
     assert describe_sensor(model, grid) == [("bow", "Pa"), ("stern", "Pa")]
     # a table that is too short for the sensor says nothing of it
-    monkeypatch.setattr(channels, "NAMES_AND_UNITS", {"mujoco.sensor.touch_grid": known[:1]})
+    monkeypatch.setattr(channels, "CHANNELS", {"mujoco.sensor.touch_grid": known[:1]})
     assert describe_sensor(model, grid) == [("1", ""), ("2", "")]
 
 
-@pytest.mark.parametrize("plugin", NAMES_AND_UNITS)
+@pytest.mark.parametrize("plugin", CHANNELS)
 def test_the_numbers_of_our_sensors_differ_in_name(plugin):
-    names = [component.name for component in NAMES_AND_UNITS[plugin]]
+    names = [name for name, _ in CHANNELS[plugin]]
     assert len(set(names)) == len(names)
     assert ("" in names) == (len(names) == 1)

@@ -1,7 +1,5 @@
 """`describe_sensor`: a name and a unit for each number of a sensor, ours and the engine's."""
 
-from collections.abc import Mapping
-
 import mujoco
 
 from buoyancy_mj.engine.instances import plugin_name
@@ -10,29 +8,8 @@ from buoyancy_mj.vehicle.engine_sensors import (
     one,
     read_components,
     repeat_components,
-    vector,
 )
-
-NAMES_AND_UNITS: Mapping[str, tuple[Component, ...]] = {
-    "buoyancy_mj.pressure": one("Pa"),
-    "buoyancy_mj.depth": one("m"),
-    "buoyancy_mj.elevation": one("m"),
-    "buoyancy_mj.wet": one(""),
-    "buoyancy_mj.water_velocity": vector("m/s"),
-    "buoyancy_mj.speed_through_water": vector("m/s"),
-    "buoyancy_mj.dvl": (
-        *vector("m/s"),
-        Component("valid_beams", ""),
-        *(Component(f"range_{beam}", "m") for beam in range(1, 5)),
-    ),
-    "buoyancy_mj.altimeter": one("m"),
-    "buoyancy_mj.hydrophone": (
-        Component("range", "m"),
-        Component("bearing", "rad"),
-        Component("elevation", "rad"),
-    ),
-}
-"""What the sensors of this package read, by the name of their plugin."""
+from buoyancy_mj.vehicle.sensors.kinds import CHANNELS
 
 
 def describe_sensor(model: mujoco.MjModel, sensor: int) -> list[Component]:
@@ -48,7 +25,8 @@ def describe_sensor(model: mujoco.MjModel, sensor: int) -> list[Component]:
     """
     known = read_components(model, sensor)
     if known is None:
-        known = NAMES_AND_UNITS.get(_plugin_name(model, sensor))
+        ours = CHANNELS.get(_plugin_name(model, sensor))
+        known = ours and tuple(Component(*channel) for channel in ours)
     dim = int(model.sensor_dim[sensor])
     if known is None or len(known) < dim:
         known = repeat_components(one(""), dim)
