@@ -25,10 +25,10 @@ def describe_sensor(model: mujoco.MjModel, sensor: int) -> list[Component]:
     """
     known = read_components(model, sensor)
     if known is None:
-        ours = CHANNELS.get(_plugin_name(model, sensor))
-        known = ours and tuple(Component(*channel) for channel in ours)
+        ours = CHANNELS.get(_plugin_name(model, sensor), ())
+        known = tuple(Component(*channel) for channel in ours)
     dim = int(model.sensor_dim[sensor])
-    if known is None or len(known) < dim:
+    if len(known) < dim:
         known = repeat_components(one(""), dim)
     return list(known[:dim])
 
