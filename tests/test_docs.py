@@ -22,6 +22,7 @@ from typer.testing import CliRunner
 import buoyancy_mj
 from buoyancy_mj import Buoyancy, Water, water_in
 from buoyancy_mj.cli import app
+from buoyancy_mj.engine.instances import instance_name, plugin_instances
 from buoyancy_mj.loads.datasets import DOFS
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import scene_from_table
@@ -127,7 +128,7 @@ def test_the_mjcf_compiles_and_floats(snippet):
     model = mujoco.MjModel.from_xml_string(whole)
     data = mujoco.MjData(model)
     mujoco.mj_step(model, data)
-    instances = re.findall(r'instance name="(\w+)"', snippet)
+    instances = [instance_name(model, i) for i in plugin_instances(model)]
     waters = [water_in(model, name) for name in instances] or [Buoyancy(model, Water())]
     for water in waters:
         assert water.evaluate(data).total.volume > 0.0

@@ -1,6 +1,7 @@
 """Thrusters as the short texts that the `<config>` of an MJCF plugin can hold, and back."""
 
 import dataclasses
+import functools
 from collections.abc import Mapping
 
 from buoyancy_mj.errors import ModelError, SceneError
@@ -25,11 +26,7 @@ def parse_thruster(texts: Mapping[str, str], where: str) -> Thruster:
         ModelError: a text that makes no sense; the message names its key.
     """
     words = {key: text.strip() for key, text in texts.items() if text.strip()}
-    try:
-        table = {key: parse_value(text, f"{where}: {key}") for key, text in words.items()}
-        return build(Thruster, table, where)
-    except SceneError as error:
-        raise ModelError(str(error)) from error
+    return _build(tuple(words.items()), where)
 
 
 def write_thruster(thruster: Thruster) -> dict[str, str]:
@@ -40,3 +37,13 @@ def write_thruster(thruster: Thruster) -> dict[str, str]:
         if value != field.default:
             texts[field.name] = format_value(value)
     return texts
+
+
+@functools.lru_cache(maxsize=256)
+def _build(words: tuple[tuple[str, str], ...], where: str) -> Thruster:
+    """The thruster of some texts, made once: others ask for it in each frame."""
+    try:
+        table = {key: parse_value(text, f"{where}: {key}") for key, text in words}
+        return build(Thruster, table, where)
+    except SceneError as error:
+        raise ModelError(str(error)) from error
