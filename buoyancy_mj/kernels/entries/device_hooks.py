@@ -13,7 +13,6 @@ from buoyancy_mj.kernels.entries.pointers import call, set_word, word
 from buoyancy_mj.kernels.entries.views import view
 from buoyancy_mj.kernels.vehicle.devices import ALIVE, CHANGES, MODEL, Device
 
-
 PASSIVE = 4
 """MuJoCo's mjPLUGIN_PASSIVE."""
 
