@@ -651,7 +651,7 @@ def test_numbers_out_of_range_are_refused(make, message):
         ("tank", "tonk", "is of the kind 'tonk'; did you mean 'tank'?"),
         ("rate", "area", "a tank, has the key 'area'; possible: capacity, rate, solid"),
         ('actdim="1"', 'actdim="2"', "keeps 2 states; write actdim='1'"),
-        ('value="t"', 'value="tt"', "'t' names the geom 'tt', and there is none"),
+        ('value="t"', 'value="tt"', "geom: the model has no geom named 'tt'"),
         ('value="0.01"', 'value="fast"', "tank rate is 'fast'; it must be a finite number"),
         ('value="t"', 'value="hull"', ""),
         ('value="t"', 'value="pier"', "names the geom 'pier', whose body cannot move"),

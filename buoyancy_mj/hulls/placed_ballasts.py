@@ -182,7 +182,10 @@ def place_ballast(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]
         raise ModelError(f"{what} is not at a site; write site='...', on the body that carries it")
     site = int(model.actuator_trnid[actuator, 0])
     ballast = parse_ballast(texts, str(model.site(site).name) or f"site {site}", what)
-    geom = find_named(model, "geom", texts["geom"], name)
+    try:
+        geom = find_named(model, mujoco.mjtObj.mjOBJ_GEOM, texts["geom"], name)
+    except ModelError as error:
+        raise ModelError(f"{what}: geom: {error}") from None
     body = int(model.body_weldid[model.geom_bodyid[geom]])
     _check_geom(model, geom, body, what)
     if model.body_weldid[model.site_bodyid[site]] != body:
