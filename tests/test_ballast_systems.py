@@ -263,6 +263,52 @@ def test_water_comes_aboard_with_its_own_velocity_and_leaves_with_the_bodys():
     assert data.qvel[0] == pytest.approx(faster, rel=1e-12)
 
 
+SPINNER = """
+<body euler="20 30 10">
+  {joint}
+  <geom type="box" size="0.1 0.1 0.1" mass="2"/>
+  <geom name="t" type="box" size="0.2 0.2 0.2" pos="0.5 0 0" mass="0"/>
+</body>
+"""
+WEIGHTLESS = "gravity='0 0 0' timestep='0.004' integrator='RK4'"
+
+
+def test_water_at_rest_that_fills_a_tank_leaves_the_momentum_of_a_body_that_tumbles():
+    tank = ("t", Tank(capacity=0.04, rate=0.02))
+    body = SPINNER.format(joint=FREE)
+    model = build(body, tank, water=FAR_BELOW, option=WEIGHTLESS)
+    data, mass = mujoco.MjData(model), np.zeros((6, 6))
+    data.qvel[:] = 0.3, 0.2, 0.1, 1.0, 0.5, -0.7
+    data.ctrl[0] = 0.04
+
+    def momentum():
+        mujoco.mj_forward(model, data)
+        mujoco.mj_fullM(model, data, mass)
+        linear, angular = np.split(mass @ data.qvel, 2)
+        return [*linear, *np.cross(data.qpos[:3], linear), *data.xmat[1].reshape(3, 3) @ angular]
+
+    def total():
+        both = np.array(momentum())
+        return np.concatenate([both[:3], both[3:6] + both[6:]])
+
+    start, speed = total(), data.qvel.copy()
+    mujoco.mj_step(model, data, 550)
+    assert data.act[0] == pytest.approx(0.04)
+    assert np.allclose(total(), start, rtol=0.0, atol=1e-4 * np.abs(start).max())
+    assert np.linalg.norm(data.qvel) < 0.2 * np.linalg.norm(speed)
+
+
+def test_water_that_leaves_a_spinning_tank_takes_along_what_it_has_at_the_opening():
+    # d(I w) = rho c^2 w dV at the opening, and I = I_0 + a V
+    body = SPINNER.format(joint="<joint type='hinge' axis='0 0 1'/>").replace("20 30 10", "0 0 0")
+    model = build(body, ("t", Tank(rate=0.01)), water=FAR_BELOW, option=WEIGHTLESS)
+    data = run(model, 3.0, act=0.02, ctrl=0.0, qvel=2.0)
+    hull, slope, opening = 2.0 * 0.02 / 3.0, 1000.0 * (0.25 + 0.08 / 3.0), 1000.0 * 0.25
+    ratio = hull / (hull + slope * 0.02)
+    assert data.act[0] == pytest.approx(0.0, abs=1e-15)
+    assert data.qvel[0] == pytest.approx(2.0 * ratio ** (opening / slope - 1.0), rel=1e-3)
+
+
 # shapes -------------------------------------------------------------------------------------------
 
 

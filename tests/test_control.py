@@ -22,8 +22,10 @@ from buoyancy_mj import (
     RegularWave,
     SceneError,
     Simulation,
+    Tank,
     Water,
     Waypoint,
+    add_ballast,
     add_water,
     read_scene,
     start_controller,
@@ -367,6 +369,24 @@ def test_a_hold_that_makes_no_sense_is_refused(values, message):
 
 
 # lqr ----------------------------------------------------------------------------------------------
+
+
+def test_ballast_is_no_thruster_and_a_rest_carries_what_it_holds():
+    sites = [f'<site name="{n}" pos="{p}" zaxis="{z}"/>' for n, (p, z) in PLACES.items()]
+    tank = '<geom name="tank" type="box" size=".1 .1 .05" mass="0" contype="0" conaffinity="0"/>'
+    motors = [f'<motor name="{n}" site="{n}" gear="0 0 1 0 0 0"/>' for n in PLACES]
+    xml = BOX.format(mass=46.0, sites="".join([*sites, tank]), motors="".join(motors))
+    spec = mujoco.MjSpec.from_string(xml)
+    add_ballast(spec, "tank", Tank(rate=1e-4))
+    add_water(spec, added_mass="ellipsoid")
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.qpos[2] = -1.0
+    data.act[0] = data.ctrl[-1] = 1.5e-3
+    update = start_controller(Lqr(), model, data)
+    assert update.allocation.names == tuple(PLACES)
+    # 48 kg of water are displaced, and 47.5 kg carried
+    assert (update.allocation.matrix @ update.motion.thrusts)[2] == pytest.approx(-0.5 * 9.81)
 
 
 def test_the_derivatives_of_the_engine_have_the_water_and_its_added_mass_in_them():

@@ -102,6 +102,9 @@ def look(model, control, *, velocity=0.0, height=None):
         (16, 1100, -3465.0, -4.069),
         (20, 1900, 3931.0, 65.9226 / KGF),
         (20, 1100, -3782.5, -49.3826 / KGF),
+        (20, 1448, -751.8, -1.6903 / KGF),
+        (16, 1464, -388.5, -0.4893 / KGF),
+        (10, 1452, -377.2, -0.4448 / KGF),
         (10, 1900, 2668.0, 28.691 / KGF),
         (10, 1704, 1621.6, 10.2754 / KGF),
         (10, 1416, -739.5, -1.6014 / KGF),
@@ -353,6 +356,41 @@ def test_water_that_holds_the_rotor_turns_the_hull_against_it(hand):
     sign = {"right": -1.0, "left": 1.0, "none": 0.0}[hand]
     assert turned == pytest.approx(sign * read.torque, abs=1e-12)
     assert data.qfrc_actuator[0] == pytest.approx(read.thrust)
+
+
+@pytest.mark.parametrize("lag", [0.0, 0.1])
+def test_derivatives_of_the_engine_have_the_torque_of_reaction_once(lag):
+    thruster = dataclasses.replace(SCREW, lag=lag, inertia=0.01 * lag)
+    model = build(thruster, hand="right")
+    data = mujoco.MjData(model)
+    data.ctrl[:], data.qvel[0] = 40.0, 0.8
+    if lag:
+        data.act[:] = 30.0
+    mujoco.mj_forward(model, data)
+    size = 2 * model.nv + model.na
+    a, b = np.zeros((size, size)), np.zeros((size, 1))
+    mujoco.mjd_transitionFD(model, data, 1e-6, True, a, b, None, None)
+
+    def step(ctrl, act):
+        other = mujoco.MjData(model)
+        other.ctrl[:], other.act[:], other.qvel[0] = 40.0 + ctrl, data.act + act, 0.8
+        mujoco.mj_step(model, other)
+        return np.concatenate([other.qvel, other.act])
+
+    by_control = (step(1e-4, 0.0) - step(-1e-4, 0.0)) / 2e-4
+    assert b[model.nv :, 0] == pytest.approx(by_control, abs=1e-6)
+    if lag:
+        by_state = (step(0.0, 1e-4) - step(0.0, -1e-4)) / 2e-4
+        assert a[model.nv :, -1] == pytest.approx(by_state, abs=1e-6)
+
+    # passes over the actuators alone, of these data and of a copy
+    copied = mujoco.MjData(model)
+    mujoco.mj_copyData(copied, model, data)
+    for one in (data, copied):
+        forces = one.qfrc_passive.copy()
+        assert abs(forces[3]) > 1e-3
+        mujoco.mj_forwardSkip(model, one, mujoco.mjtStage.mjSTAGE_VEL, 0)
+        assert one.qfrc_passive == pytest.approx(forces, abs=1e-12)
 
 
 # at the surface -----------------------------------------------------------------------------------

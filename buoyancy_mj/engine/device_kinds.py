@@ -37,8 +37,8 @@ class DeviceKind(NamedTuple):
     """Keys of its configuration."""
     plan: Callable[[mujoco.MjModel, int, Mapping[str, str]], Plan]
     """Finds what an instance of a model is, from the texts of its configuration."""
-    capability: mujoco.mjtPluginCapabilityBit
-    """What it does for the engine."""
+    capability: int
+    """What it does for the engine: bits of mjtPluginCapabilityBit."""
     stage: mujoco.mjtStage = mujoco.mjtStage.mjSTAGE_POS
     """When a sensor is read."""
     numbers: int = 0

@@ -105,6 +105,7 @@ def resolve_device(model: int, data: int, instance: int) -> None:
             offsets=_offsets().ctypes.data,
             sea=sea.address,
             readings=_tables[old].arrays[0].readings if old else np.zeros(plan.readings),
+            added=_tables[old].arrays[0].added if old else np.zeros(3),
         )
         device.ids[[ALIVE, MODEL, CHANGES]] = 1, model, changes
         table = Table(plan.make(device))

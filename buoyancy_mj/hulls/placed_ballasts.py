@@ -41,6 +41,10 @@ class PlacedBallast:
     """Index of its plugin instance."""
     actuator: int
     """Index of its actuator."""
+    address: int
+    """Index of its command in `ctrl`."""
+    output: int
+    """Index of its actuator in `actuator_force`."""
     state: int
     """Index of its volume among the states of actuators, `data.act`."""
     geom: int
@@ -196,6 +200,8 @@ def place_ballast(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]
         ballast=ballast,
         instance=instance,
         actuator=actuator,
+        address=int(model.actuator_ctrladr[actuator]),
+        output=int(model.actuator_outadr[actuator]),
         state=int(model.actuator_actadr[actuator]),
         geom=geom,
         site=site,

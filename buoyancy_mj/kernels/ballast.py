@@ -19,13 +19,12 @@ from numba import njit
 from buoyancy_mj.kernels import fills
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.clip import CX, CY, CZ, VOLUME
-from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.fills import Fills
 from buoyancy_mj.kernels.flooding import BLADDER, find_flow
 from buoyancy_mj.kernels.inertia import add_matrix, set_to_body
 from buoyancy_mj.kernels.reaction import add_coriolis, multiply, set_motion
 from buoyancy_mj.kernels.vectors import difference, place, triple
-from buoyancy_mj.kernels.waves import add_velocity
+from buoyancy_mj.kernels.vehicle.motion import find_velocity, set_water_velocity
 from buoyancy_mj.kernels.wrenches import add_wrench
 
 
@@ -40,8 +39,10 @@ class Ballast(NamedTuple):
     """Index of its geom."""
     sites: Annotated[Words, ("n",)]
     """Index of the site where water comes in: the opening of a compartment."""
-    actuators: Annotated[Words, ("n",)]
-    """Index of its actuator."""
+    addresses: Annotated[Words, ("n",)]
+    """Index of its command in `ctrl`."""
+    outputs: Annotated[Words, ("n",)]
+    """Index of its actuator in `actuator_force`."""
     acts: Annotated[Words, ("n",)]
     """Index of its volume [m^3] among the states of actuators."""
     rows: Annotated[Words, ("n",)]
@@ -147,19 +148,24 @@ def add_ballast(
                 at = place(origin, r, moments[0] / volume, moments[1] / volume, moments[2] / volume)
             _add_push(at, com, 0.0, 0.0, -sea.density * gravity * volume, out[b])
 
-        # what comes aboard brings its own velocity, and takes on the body's
+        # what comes aboard brings the momentum of the water around, and what leaves has the hull's;
+        # what is aboard takes on the hull's wherever it lies, and not only at the opening
+        if volume != commands.act[ballast.acts[n]]:
+            continue
         flow = find_flow(ballast, n, commands, geoms, sea, time, timestep, gravity)
+        if flow == 0.0:
+            continue
+        fills.set_growth(ballast.fills, n, volume, moments)
+        fills.set_matrix(1.0, moments, -sea.density * flow, matrix)
+        multiply(matrix, v, f)
+        add_wrench(r, origin, com, f, out[b])
+        at = triple(commands.site_xpos, ballast.sites[n], 0)
         if flow > 0.0:
-            x, y, z = at = triple(commands.site_xpos, ballast.sites[n], 0)
-            set_current(sea.current, sea.level - z, time, water)
-            add_velocity(sea.waves, x, y, z - sea.level, time, water)
-            spin = bodies.cvel[b]
-            x, y, z = difference(at, bodies.subtree_com[bodies.body_rootid[b]])
-            taken = sea.density * flow
-            fx = taken * (water[0] - (spin[3] + spin[1] * z - spin[2] * y))
-            fy = taken * (water[1] - (spin[4] + spin[2] * x - spin[0] * z))
-            fz = taken * (water[2] - (spin[5] + spin[0] * y - spin[1] * x))
-            _add_push(at, com, fx, fy, fz, out[b])
+            set_water_velocity(sea, at, time, water)
+        else:
+            water[0], water[1], water[2] = find_velocity(bodies, b, at)
+        taken = sea.density * flow
+        _add_push(at, com, taken * water[0], taken * water[1], taken * water[2], out[b])
 
 
 @njit(cache=True, error_model="numpy", inline="always")

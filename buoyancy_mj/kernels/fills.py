@@ -50,6 +50,26 @@ class Fills(NamedTuple):
 @njit(cache=True, error_model="numpy")
 def set_moments(fills, n, volume, out):
     """Write the moments (9,) of a volume of water in a tank to `out`."""
+    low = _find_piece(fills, n, volume)
+    x, piece = volume - fills.knots[low], fills.pieces[low]
+    for m in range(MOMENTS):
+        c = COEFFICIENTS * m
+        out[m] = ((piece[c] * x + piece[c + 1]) * x + piece[c + 2]) * x + piece[c + 3]
+
+
+@njit(cache=True, error_model="numpy")
+def set_growth(fills, n, volume, out):
+    """Write how the moments (9,) grow with the volume of water in a tank to `out`."""
+    low = _find_piece(fills, n, volume)
+    x, piece = volume - fills.knots[low], fills.pieces[low]
+    for m in range(MOMENTS):
+        c = COEFFICIENTS * m
+        out[m] = (3.0 * piece[c] * x + 2.0 * piece[c + 1]) * x + piece[c + 2]
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _find_piece(fills, n, volume):
+    """The piece of a tank's moments that a volume of water lies on."""
     knots, low, high = fills.knots, fills.knot_starts[n], fills.knot_starts[n + 1] - 1
     while high - low > 1:
         middle = (low + high) // 2
@@ -57,10 +77,7 @@ def set_moments(fills, n, volume, out):
             high = middle
         else:
             low = middle
-    x, piece = volume - knots[low], fills.pieces[low]
-    for m in range(MOMENTS):
-        c = COEFFICIENTS * m
-        out[m] = ((piece[c] * x + piece[c + 1]) * x + piece[c + 2]) * x + piece[c + 3]
+    return low
 
 
 @njit(cache=True, error_model="numpy")

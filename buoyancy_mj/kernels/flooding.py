@@ -37,7 +37,7 @@ def find_flow(
     if not timestep > 0.0:
         return 0.0
     if ballast.kinds[n] != COMPARTMENT:
-        u = ballast.actuators[n]
+        u = ballast.addresses[n]
         wanted = commands.ctrl[u]
         if commands.actuator_ctrllimited[u]:
             low, high = commands.actuator_ctrlrange[u, 0], commands.actuator_ctrlrange[u, 1]

@@ -8,7 +8,9 @@ import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from buoyancy_mj.engine.device_kinds import kind_of
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.hulls.ballasts import PLUGIN as BALLAST
 from buoyancy_mj.vehicle.thruster import Thruster
 from buoyancy_mj.vehicle.thrusters import find_thruster
 
@@ -133,7 +135,8 @@ class Drive:
 def find_drives(model: mujoco.MjModel) -> tuple[Drive, ...]:
     """Find the actuators that push at a site, in the order of the model.
 
-    Actuators of disabled groups do not push, and those between two sites push on neither alone.
+    Actuators of disabled groups and ballast do not push, and those between two sites push on
+    neither alone.
 
     Raises:
         ModelError: the thrust of one does not follow from its control.
@@ -144,6 +147,7 @@ def find_drives(model: mujoco.MjModel) -> tuple[Drive, ...]:
         for actuator in np.flatnonzero(at_sites & (model.actuator_trnid[:, 1] < 0)).tolist()
         if model.actuator_gear[model.actuator_outadr[actuator]].any()
         and not _is_disabled(model, actuator)
+        and not _is_ballast(model, actuator)
     )
 
 
@@ -186,9 +190,10 @@ def _read_motor(model: mujoco.MjModel, actuator: int, scale: float) -> Motor:
     is_affine = model.actuator_biastype[actuator] == _AFFINE
     bias = scale * float(model.actuator_biasprm[actuator, 0]) if is_affine else 0.0
     odd = [key for values, known, key in kinds if values[actuator] not in known]
-    if odd or gain == 0.0 or model.actuator_ctrlnum[actuator] != 1:
+    is_plugin = model.actuator_plugin[actuator] >= 0
+    if odd or is_plugin or gain == 0.0 or model.actuator_ctrlnum[actuator] != 1:
         why = f"its {' and '.join(odd)}" if odd else "its gain or number of controls"
-        if model.actuator_plugin[actuator] >= 0:
+        if is_plugin:
             why = "its plugin"
         raise ModelError(
             f"the thrust of actuator '{model.actuator(actuator).name}' does not follow from its "
@@ -212,3 +217,9 @@ def _is_disabled(model: mujoco.MjModel, actuator: int) -> bool:
     """Whether an actuator is of a group that the model's options disable."""
     group = int(model.actuator_group[actuator])
     return 0 <= group <= 30 and bool(model.opt.disableactuator >> group & 1)
+
+
+def _is_ballast(model: mujoco.MjModel, actuator: int) -> bool:
+    """Whether an actuator is a bladder, a tank or a compartment."""
+    kind = kind_of(model, int(model.actuator_plugin[actuator]))
+    return kind is not None and kind.plugin == BALLAST

@@ -173,6 +173,8 @@ register_kind(
         plugin=PLUGIN,
         keys=KEYS,
         plan=_plan,
-        capability=mujoco.mjtPluginCapabilityBit.mjPLUGIN_ACTUATOR,
+        # it is told when passive forces are computed, to which it adds torque
+        capability=int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_ACTUATOR)
+        | int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
     )
 )

@@ -50,5 +50,5 @@ def compute(model: int64, data: int64, device: int64) -> int64:
     """Ballast pushes nothing as an actuator: its loads come with the water's; returns 0."""
     known = view(device, BallastDevice)
     equipment = view_engine(model, data, known.device.offsets, Equipment)
-    equipment.actuators.actuator_force[known.ballast.actuators[0]] = 0.0
+    equipment.actuators.actuator_force[known.ballast.outputs[0]] = 0.0
     return 0

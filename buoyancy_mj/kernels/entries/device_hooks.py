@@ -13,6 +13,9 @@ from buoyancy_mj.kernels.entries.pointers import call, set_word, word
 from buoyancy_mj.kernels.entries.views import view
 from buoyancy_mj.kernels.vehicle.devices import ALIVE, CHANGES, MODEL, Device
 
+PASSIVE = 4
+"""MuJoCo's mjPLUGIN_PASSIVE."""
+
 
 class DeviceContext(NamedTuple):
     """What the hooks are given."""
@@ -87,13 +90,14 @@ def destroy(data: int64, instance: int32, context: int64) -> void:
 
 
 def copy(target: int64, model: int64, source: int64, instance: int32, context: int64) -> void:
-    """The engine copies a data: the readings go along."""
+    """The engine copies a data: the readings go along, and what was added to its forces."""
     one, other = word(_slot(target, instance, context)), word(_slot(source, instance, context))
     if one == 0 or other == 0:
         return
     into, readings = view(one, Device).readings, view(other, Device).readings
     for i in range(min(into.shape[0], readings.shape[0])):
         into[i] = readings[i]
+    view(one, Device).added[:] = view(other, Device).added
 
 
 def actuator_act_dot(model: int64, data: int64, instance: int32, context: int64) -> void:
@@ -106,9 +110,11 @@ def actuator_act_dot(model: int64, data: int64, instance: int32, context: int64)
 
 
 def compute(model: int64, data: int64, instance: int32, capability: int32, context: int64) -> void:
-    """The engine wants what a device does."""
+    """The engine wants what a device does, or has just computed its passive forces."""
     device = _find_device(model, data, instance, context)
-    if device != 0:
+    if device != 0 and capability == PASSIVE:
+        view(device, Device).added[:] = 0.0
+    elif device != 0:
         _tell(call(view(device, Device).compute, (model, data, device)), context)
 
 

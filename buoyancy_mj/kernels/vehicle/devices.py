@@ -26,3 +26,6 @@ class Device(NamedTuple):
     without water."""
     readings: Annotated[Doubles, ("m",)]
     """What it leaves for others to read."""
+    added: Annotated[Doubles, (3,)]
+    """Torque [N m], world frame, that it has added to `qfrc_passive` since the engine last computed
+    that."""

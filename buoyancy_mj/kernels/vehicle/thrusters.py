@@ -178,6 +178,7 @@ def push(p, around, sea):
     if is_disabled(p, around):
         around.actuator_force[p.output] = 0.0
         readings[:] = 0.0
+        turn_by(p, around, 0.0, 0.0, 0.0)
         return
     now = look(p, around, sea)
     around.actuator_force[p.output] = now.thrust
@@ -210,9 +211,20 @@ def turn_hull(p, around, now):
     tx = about * x - h * (turn[1] * z - turn[2] * y)
     ty = about * y - h * (turn[2] * x - turn[0] * z)
     tz = about * z - h * (turn[0] * y - turn[1] * x)
+    turn_by(p, around, tx, ty, tz)
 
-    i = last_dof(around, body)
+
+@njit(cache=True, error_model="numpy", inline="always")
+def turn_by(p, around, tx, ty, tz):
+    """Add a torque [N m] to `qfrc_passive`, in place of what it has added before.
+
+    The engine may go over the actuators again without computing passive forces anew.
+    """
+    added = p.device.added
+    dx, dy, dz = tx - added[0], ty - added[1], tz - added[2]
+    added[0], added[1], added[2] = tx, ty, tz
+    i = last_dof(around, around.site_bodyid[p.site])
     while i >= 0:
         c = around.cdof[i]
-        around.qfrc_passive[i] += c[0] * tx + c[1] * ty + c[2] * tz
+        around.qfrc_passive[i] += c[0] * dx + c[1] * dy + c[2] * dz
         i = around.dof_parentid[i]

@@ -76,7 +76,8 @@ def _balance(outset: Outset, dofs: NDArray[np.int64]) -> NDArray[np.float64]:
     """Find the thrusts (m,) [N] that hold a vehicle at rest, and set them."""
     model, data, craft = outset.model, outset.data, outset.craft
     data.ctrl[[drive.control for drive in craft.drives]] = 0.0
-    data.act[:] = 0.0
+    states = _find_states(outset)
+    data.act[states] = 0.0
     mujoco.mj_forward(model, data)
 
     # what pulls, as generalized force, by least squares over the thrusts
@@ -99,16 +100,26 @@ def _balance(outset: Outset, dofs: NDArray[np.int64]) -> NDArray[np.float64]:
             f"{allocation.least[i]:.3g} to {allocation.most[i]:.3g} N"
         )
     allocation.write(data, thrusts)
-    _settle(model, data)
+    _settle(model, data, states)
     return np.asarray(thrusts)
 
 
-def _settle(model: mujoco.MjModel, data: mujoco.MjData) -> None:
-    """Let the states of actuators come to rest under their controls, the vehicle held."""
-    for _ in range(_SETTLING if model.na else 1):
+def _find_states(outset: Outset) -> NDArray[np.int64]:
+    """Indices of the states of the drives in `data.act`; tanks keep what they hold."""
+    model = outset.model
+    ranges = [
+        np.arange(model.actuator_actnum[drive.actuator]) + model.actuator_actadr[drive.actuator]
+        for drive in outset.craft.drives
+    ]
+    return np.concatenate([np.zeros(0, np.int64), *ranges]).astype(np.int64)
+
+
+def _settle(model: mujoco.MjModel, data: mujoco.MjData, states: NDArray[np.int64]) -> None:
+    """Let states of actuators come to rest under their controls, the vehicle held."""
+    for _ in range(_SETTLING if len(states) else 1):
         mujoco.mj_forward(model, data)
-        change = model.opt.timestep * data.act_dot
-        data.act[:] += change
+        change = model.opt.timestep * data.act_dot[states]
+        data.act[states] += change
         if np.abs(change).max(initial=0.0) < 1e-9:
             break
 
