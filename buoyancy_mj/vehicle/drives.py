@@ -138,7 +138,7 @@ def find_pushing(model: mujoco.MjModel) -> list[int]:
         actuator
         for actuator in np.flatnonzero(model.actuator_trntype == mujoco.mjtTrn.mjTRN_SITE).tolist()
         if model.actuator_gear[model.actuator_outadr[actuator]].any()
-        and not _is_ballast(model, actuator)
+        and not is_ballast(model, actuator)
     ]
 
 
@@ -157,7 +157,7 @@ def find_drives(model: mujoco.MjModel) -> tuple[Drive, ...]:
     )
 
 
-def _is_ballast(model: mujoco.MjModel, actuator: int) -> bool:
+def is_ballast(model: mujoco.MjModel, actuator: int) -> bool:
     """Whether an actuator is a bladder, a tank or a compartment."""
     kind = kind_of(model, int(model.actuator_plugin[actuator]))
     return kind is not None and kind.plugin == BALLAST
