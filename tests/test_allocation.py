@@ -5,7 +5,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import ModelError, Thruster, add_thruster, allocation, find_thruster
+from buoyancy_mj import (
+    ModelError,
+    Tank,
+    Thruster,
+    add_ballast,
+    add_thruster,
+    allocation,
+    find_thruster,
+)
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.vehicle.drives import find_drives
 
@@ -191,6 +199,15 @@ def test_actuators_that_push_nothing_alone_are_no_drives():
     grouped = model_of(MOTORS.replace('name="port"', 'name="port" group="1"'))
     grouped.opt.disableactuator = 2
     assert allocation(grouped).names == ("starboard",)
+
+
+def test_ballast_has_a_site_and_pushes_nothing():
+    spec = mujoco.MjSpec.from_string(PAIR.format(actuators=MOTORS, more=""))
+    spec.body("rov").add_geom(name="tank", size=[0.05, 0, 0], mass=0.0)
+    add_ballast(spec, "tank", Tank(rate=1e-5))
+    dry, found = allocation(model_of()), allocation(spec.compile())
+    assert found.names == dry.names
+    np.testing.assert_allclose(found.matrix, dry.matrix, atol=1e-12)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
+from buoyancy_mj import Tank, add_ballast
 from buoyancy_mj.vehicle import channels
 from buoyancy_mj.vehicle.channels import describe_sensor
 from buoyancy_mj.vehicle.engine_sensors import Component
@@ -97,6 +98,16 @@ def test_numbers_are_read_where_the_engine_has_them(model):
     assert values["winch.control"] == 5.0
     assert values["pull"] == values["winch.force"] == data.actuator("winch").force
     assert values["thrust.activation"] == 6.0
+
+
+def test_ballast_is_commanded_and_kept_in_cubic_metres():
+    spec = mujoco.MjSpec()
+    body = spec.worldbody.add_body(name="hull")
+    body.add_freejoint()
+    body.add_geom(name="tank", size=[0.1, 0, 0])
+    add_ballast(spec, "tank", Tank(rate=1e-3))
+    units = {channel.name: channel.unit for channel in Instruments(spec.compile()).channels}
+    assert units == {"tank.control": "m^3", "tank.force": "N", "tank.activation": "m^3"}
 
 
 def test_a_model_without_instruments_has_no_channels():

@@ -218,6 +218,14 @@ def anchors(text):
     return {re.sub(r"\s+", "-", re.sub(r"[^\w\s-]", "", title.lower()).strip()) for title in titles}
 
 
+def test_every_page_of_the_guide_stands_in_its_table_and_in_the_navigation():
+    index, navigation = PAGES["docs/guide/index.md"], (ROOT / "mkdocs.yml").read_text()
+    pages = [path.name for path in (ROOT / "docs" / "guide").glob("*.md") if path.stem != "index"]
+    order = re.findall(r"^\| .* \| \[.*\]\((\w+\.md)\) \|$", index, re.MULTILINE)
+    assert sorted(order) == sorted(pages)
+    assert re.findall(r"- guide/(\w+\.md)", navigation) == ["index.md", *order]
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_every_file_and_every_name_in_the_text_exists(page):
     for name in re.findall(
@@ -293,7 +301,7 @@ def test_an_undocumented_public_name_is_found():
 def test_the_site_builds_without_a_broken_link_and_asks_nothing_of_the_network(tmp_path):
     for module in ("latex2mathml", "material", "mkdocstrings"):
         pytest.importorskip(module, reason="the extra 'docs' is not installed")
-    command = [sys.executable, "-m", "mkdocs", "build", "--quiet", "--site-dir", str(tmp_path)]
+    command = [sys.executable, "-m", "mkdocs", "build", "--site-dir", str(tmp_path)]
     environment = os.environ | {"NO_MKDOCS_2_WARNING": "1", "PYTHONPATH": str(ROOT)}
     built = subprocess.run(
         command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.autopilot.imu import HALF_TURN, find_imu, imu_pose
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.vehicle.channels import actuator_name
+from buoyancy_mj.vehicle.drives import find_pushing
 
 _JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 
@@ -50,9 +51,10 @@ def find_thrusters(model: mujoco.MjModel, data: mujoco.MjData, vehicle: Vehicle)
     _, rotation = imu_pose(data, *find_imu(model, vehicle))
     imu_from_world = rotation.reshape(3, 3).T
     thrusters = []
+    pushing = find_pushing(model)
     for name, actuator in find_actuators(model, vehicle).items():
         gear = model.actuator_gear[actuator, :3]
-        if model.actuator_trntype[actuator] != mujoco.mjtTrn.mjTRN_SITE or not gear.any():
+        if actuator not in pushing or not gear.any():
             continue
 
         # the site's axis and arm, in the axes of the autopilot

@@ -39,12 +39,13 @@ class AutopilotFlags:
     """How an autopilot is heard, and how long."""
 
     frame: Annotated[str, typer.Option(metavar="FRAME")] = "vectored_6dof"
-    """The autopilot's frame, whose motors find their thrusters by geometry."""
+    """The autopilot's frame, whose motors find their thrusters by geometry; a wrong name lists
+    them all."""
     map: Annotated[str | None, typer.Option(metavar="OUTPUT=NAME,...")] = None
     """Outputs of the autopilot and the actuators that they drive, as 1=bow,2=-stern; a minus turns
     the sense."""
     host: str | None = None
-    """Listen on this address."""
+    """Listen on this address instead of 127.0.0.1; any other needs --expose."""
     port: int = PORT
     """Listen on this port."""
     expose: bool = False

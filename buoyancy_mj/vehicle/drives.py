@@ -132,6 +132,16 @@ class Drive:
         return float(self.curve.thrust(state + self.curve.neutral))
 
 
+def find_pushing(model: mujoco.MjModel) -> list[int]:
+    """Indices of the actuators that push or turn at a site: not ballast, which has a site too."""
+    return [
+        actuator
+        for actuator in np.flatnonzero(model.actuator_trntype == mujoco.mjtTrn.mjTRN_SITE).tolist()
+        if model.actuator_gear[model.actuator_outadr[actuator]].any()
+        and not is_ballast(model, actuator)
+    ]
+
+
 def find_drives(model: mujoco.MjModel) -> tuple[Drive, ...]:
     """Find the actuators that push at a site, in the order of the model.
 
@@ -141,14 +151,17 @@ def find_drives(model: mujoco.MjModel) -> tuple[Drive, ...]:
     Raises:
         ModelError: the thrust of one does not follow from its control.
     """
-    at_sites = model.actuator_trntype == mujoco.mjtTrn.mjTRN_SITE
     return tuple(
         _read_drive(model, actuator)
-        for actuator in np.flatnonzero(at_sites & (model.actuator_trnid[:, 1] < 0)).tolist()
-        if model.actuator_gear[model.actuator_outadr[actuator]].any()
-        and not _is_disabled(model, actuator)
-        and not _is_ballast(model, actuator)
+        for actuator in find_pushing(model)
+        if model.actuator_trnid[actuator, 1] < 0 and not _is_disabled(model, actuator)
     )
+
+
+def is_ballast(model: mujoco.MjModel, actuator: int) -> bool:
+    """Whether an actuator is a bladder, a tank or a compartment."""
+    kind = kind_of(model, int(model.actuator_plugin[actuator]))
+    return kind is not None and kind.plugin == BALLAST
 
 
 def _read_drive(model: mujoco.MjModel, actuator: int) -> Drive:
@@ -190,11 +203,10 @@ def _read_motor(model: mujoco.MjModel, actuator: int, scale: float) -> Motor:
     is_affine = model.actuator_biastype[actuator] == _AFFINE
     bias = scale * float(model.actuator_biasprm[actuator, 0]) if is_affine else 0.0
     odd = [key for values, known, key in kinds if values[actuator] not in known]
-    is_plugin = model.actuator_plugin[actuator] >= 0
-    if odd or is_plugin or gain == 0.0 or model.actuator_ctrlnum[actuator] != 1:
+    has_plugin = model.actuator_plugin[actuator] >= 0
+    if has_plugin or odd or gain == 0.0 or model.actuator_ctrlnum[actuator] != 1:
         why = f"its {' and '.join(odd)}" if odd else "its gain or number of controls"
-        if is_plugin:
-            why = "its plugin"
+        why = "its plugin" if has_plugin else why
         raise ModelError(
             f"the thrust of actuator '{model.actuator(actuator).name}' does not follow from its "
             f"control: {why} is not that of a motor or of a thruster; give it one of these, or put "
@@ -217,9 +229,3 @@ def _is_disabled(model: mujoco.MjModel, actuator: int) -> bool:
     """Whether an actuator is of a group that the model's options disable."""
     group = int(model.actuator_group[actuator])
     return 0 <= group <= 30 and bool(model.opt.disableactuator >> group & 1)
-
-
-def _is_ballast(model: mujoco.MjModel, actuator: int) -> bool:
-    """Whether an actuator is a bladder, a tank or a compartment."""
-    kind = kind_of(model, int(model.actuator_plugin[actuator]))
-    return kind is not None and kind.plugin == BALLAST

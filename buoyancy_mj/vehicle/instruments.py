@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.vehicle.channels import actuator_name, describe_sensor, sensor_name
+from buoyancy_mj.vehicle.drives import is_ballast
 from buoyancy_mj.vehicle.engine_sensors import one, repeat_components
 from buoyancy_mj.vehicle.transmissions import transmission_units
 
@@ -26,7 +27,7 @@ class Channel(NamedTuple):
     """Name of the number within its owner, as 'x'; '' for the only one of its kind."""
     unit: str
     """Its unit; '' for none, and for a control or an activation, which has whatever unit its
-    actuator gives it."""
+    actuator gives it. Those of ballast are volumes."""
 
     @property
     def name(self) -> str:
@@ -67,6 +68,13 @@ def _list_actuators(model: mujoco.MjModel) -> Iterator[Channel]:
         (ACTIVATION, model.actuator_actnum),
     ):
         for actuator, count in enumerate(counts.tolist()):
-            unit = transmission_units(model, actuator).force if kind == FORCE else ""
+            unit = _actuator_unit(model, actuator, kind)
             for part, _ in repeat_components(one(""), count):
                 yield Channel(kind, actuator_name(model, actuator), part, unit)
+
+
+def _actuator_unit(model: mujoco.MjModel, actuator: int, kind: str) -> str:
+    """The unit of a channel of an actuator, where that is known."""
+    if kind == FORCE:
+        return transmission_units(model, actuator).force
+    return "m^3" if is_ballast(model, actuator) else ""

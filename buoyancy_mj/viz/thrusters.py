@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.vehicle.channels import actuator_name
+from buoyancy_mj.vehicle.drives import find_pushing
 from buoyancy_mj.viz.framing import arrow_scale
 from buoyancy_mj.viz.log import Log
 
@@ -27,7 +28,7 @@ class ThrusterDrawing:
 
     def __init__(self, run: Run, size: float) -> None:
         model = run.model
-        at_site = np.flatnonzero(model.actuator_trntype == mujoco.mjtTrn.mjTRN_SITE)
+        at_site = np.array(find_pushing(model), int)
         self._actuators = at_site[model.actuator_gear[at_site, :3].any(axis=1)]
         self._gear = model.actuator_gear[self._actuators, :3]
         self._names = [actuator_name(model, actuator) for actuator in self._actuators.tolist()]
