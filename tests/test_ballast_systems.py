@@ -605,7 +605,7 @@ def test_numbers_out_of_range_are_refused(make, message):
         ("tank", "tonk", "is of the kind 'tonk'; did you mean 'tank'?"),
         ("rate", "area", "a tank, has the key 'area'; possible: capacity, rate, solid"),
         ('actdim="1"', 'actdim="2"', "keeps 2 states; write actdim='1'"),
-        ('value="t"', 'value="tt"', "'t' names the geom 'tt', and there is none"),
+        ('value="t"', 'value="tt"', "ballast 't': geom: the model has no geom named 'tt'; did you"),
         ('value="0.01"', 'value="fast"', "tank rate is 'fast'; it must be a finite number"),
         ('value="t"', 'value="hull"', ""),
         ('value="t"', 'value="pier"', "names the geom 'pier', whose body cannot move"),
@@ -641,6 +641,19 @@ def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
         return
     with pytest.raises((ModelError, mujoco.FatalError, ValueError), match=re.escape(message)):
         mujoco.MjData(mujoco.MjModel.from_xml_string(changed))
+
+
+@pytest.mark.parametrize("affixes", [{"prefix": "rov/"}, {"suffix": "_2"}, {"prefix": "a_"}])
+def test_ballast_that_was_attached_is_in_the_geom_that_came_with_it(affixes):
+    parent = mujoco.MjSpec.from_string("<mujoco><option timestep='0.01'/></mujoco>")
+    parent.attach(loaded_barge(), frame=parent.worldbody.add_frame(), **affixes)
+    add_water(parent, Water())
+    model = parent.compile()
+    names = [model.geom(placed.geom).name for placed in find_ballasts(model)]
+    prefix, suffix = affixes.get("prefix", ""), affixes.get("suffix", "")
+    assert [name.lstrip("/") for name in names] == [
+        f"{prefix}{geom}{suffix}" for geom in ("t", "hold", "hull")
+    ]
 
 
 def test_a_body_whose_inertia_is_kept_as_a_diagonal_has_no_room_for_water():

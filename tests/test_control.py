@@ -715,7 +715,8 @@ def test_a_program_needs_a_file_and_a_function():
         ({"kind": "pid"}, "scene: control: unknown kind 'pid'; possible: file, hold, keyframes"),
         (
             {"kind": "hold", "dept": 1.0},
-            "scene: control: unknown key 'dept'; did you mean 'depth'? possible: bandwidth,",
+            "scene: control: unknown key 'dept'; did you mean 'depth'? possible: bandwidth, depth, "
+            "depth_gains, free, heading, heading_gains, kind, pitch_gains, position,",
         ),
         ({"kind": "hold", "depth": "deep"}, "scene: control: depth is 'deep'; needed is a number"),
         ({"kind": "hold", "speed": -1}, "scene: control: speed is -1.0; it must be above 0"),

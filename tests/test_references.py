@@ -4,7 +4,7 @@ import mujoco
 import pytest
 
 from buoyancy_mj import ModelError
-from buoyancy_mj.vehicle.references import find_by_last_word, find_named
+from buoyancy_mj.hulls.references import find_by_last_word, find_named
 
 SITE = mujoco.mjtObj.mjOBJ_SITE
 

@@ -178,7 +178,7 @@ def place_ballast(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]
         raise ModelError(f"{what} is not at a site; write site='...', on the body that carries it")
     site = int(model.actuator_trnid[actuator, 0])
     ballast = parse_ballast(texts, str(model.site(site).name) or f"site {site}", what)
-    geom = find_named(model, "geom", texts["geom"], name)
+    geom = _find_geom(model, texts["geom"], name)
     body = int(model.body_weldid[model.geom_bodyid[geom]])
     _check_geom(model, geom, body, what)
     if model.body_weldid[model.site_bodyid[site]] != body:
@@ -220,6 +220,18 @@ def _find_actuator(model: mujoco.MjModel, instance: int) -> int:
     return int(actuators[0])
 
 
+def _find_geom(model: mujoco.MjModel, name: str, owner: str) -> int:
+    """The index of the geom that ballast names.
+
+    Raises:
+        ModelError: there is none.
+    """
+    try:
+        return find_named(model, mujoco.mjtObj.mjOBJ_GEOM, name, owner)
+    except ModelError as error:
+        raise ModelError(f"ballast '{owner}': geom: {error}") from None
+
+
 def _check_geom(model: mujoco.MjModel, geom: int, body: int, what: str) -> None:
     """Refuse a geom that bounds no volume or cannot move."""
     name = geom_name(model, geom)
@@ -243,6 +255,8 @@ def _check_capacity(model: mujoco.MjModel, placed: PlacedBallast, what: str) -> 
             f"{what} has a capacity of {stated:g} m^3, and its geom '{name}' a volume of "
             f"{volume:g} m^3; give it at most that, or make the geom larger"
         )
+    if model.actuator_dyntype[placed.actuator] != mujoco.mjtDyn.mjDYN_NONE:
+        raise ModelError(f"{what} has a dyntype, which it does not follow; remove it")
     states = model.actuator_actnum[placed.actuator]
     if states != 1:
         raise ModelError(f"{what} keeps {states} states; write actdim='1', for its volume alone")

@@ -7,10 +7,10 @@ from typing import ClassVar
 import mujoco
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.hulls.references import find_by_last_word, find_named
 from buoyancy_mj.kernels.entries.sensors import read_hydrophone
 from buoyancy_mj.kernels.vehicle.sensors.hydrophone import HydrophoneSensor
 from buoyancy_mj.values import read_text
-from buoyancy_mj.vehicle.references import find_by_last_word, find_named
 from buoyancy_mj.vehicle.sensors.kinds import Bind, Place, register_sensor
 from buoyancy_mj.vehicle.sensors.sampling import Kind, NoisySensor
 
