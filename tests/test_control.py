@@ -5,6 +5,7 @@ import dataclasses
 import json
 import math
 import re
+import sys
 
 import mujoco
 import numpy as np
@@ -655,6 +656,19 @@ def test_a_program_runs_at_its_rate_for_who_trusts_it(code):
         seen.append(float(simulation.data.ctrl[0]))
     assert seen[0] == pytest.approx(8.0 * 0.2)
     assert [i for i in range(1, 30) if seen[i] != seen[i - 1]] == [10, 20]
+
+
+def test_a_program_imports_files_beside_it(code):
+    (code / "tuning_beside_it.py").write_text("gain = 3.0\n")
+    (code / "main.py").write_text(
+        "from tuning_beside_it import gain\n\n\ndef update(_, data):\n    data.ctrl[:] = gain\n"
+    )
+    before = list(sys.path)
+    control = {"kind": "file", "file": "main.py:update"}
+    simulation = controlled(control, folder=code, trust=True)
+    simulation.step()
+    assert simulation.data.ctrl[0] == 3.0
+    assert sys.path == before
 
 
 def test_a_program_that_fails_is_told_with_time_and_name_and_the_recording_is_kept(
