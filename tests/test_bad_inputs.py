@@ -36,6 +36,7 @@ from buoyancy_mj.errors import BuoyancyError, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.loads.damping import VISCOUS
 from buoyancy_mj.scenes import ranges
+from buoyancy_mj.scenes.controls import CONTROLS
 from buoyancy_mj.scenes.scene import KEYS, Scene
 from buoyancy_mj.scenes.scene_vehicle import SceneVehicle
 from buoyancy_mj.settings.config import KEYS as PLUGIN_KEYS
@@ -85,7 +86,7 @@ NEEDED = {
     "depths": "[0.0]",
     "times": "[0.0]",
     "velocities": "[[0.0, 0.0, 0.0]]",
-    "file": '"x"',
+    "file": '"x.py:f"',
     "period": "3.0",
 }
 """Good values of keys that have no default."""
@@ -108,7 +109,11 @@ def table_of(path, kind, cls):
         for field in dataclasses.fields(cls)
         if field.default is field.default_factory is dataclasses.MISSING
     }
+    # a list that may be empty is refused elsewhere
+    lists = {field.name for field in dataclasses.fields(cls) if field.default == ()}
     for name, plain in types_of(cls):
+        if name in lists:
+            continue
         rest = "".join(f", {key}={value}" for key, value in needed.items() if key != name)
         yield f"{path}.{name}", plain, f'{path}={{kind="{kind}"{rest}, {name}=%s}}'
 
@@ -118,7 +123,7 @@ def keys_of_scene():
     # plain keys, of the scene and of tables that have no kinds
     for cls, path in ((Scene, ""), (Start, "start."), (Water, "water.")):
         for name, kind in types_of(cls):
-            if path or name in {*KEYS} - {"vehicles"}:
+            if path or name in {*KEYS} - {"vehicles", "control"}:
                 yield path + name, kind, f"{path}{name}=%s"
     for name in ("geoms", "hull", "fill"):
         yield name, tuple, f"{name}=%s"
@@ -130,7 +135,12 @@ def keys_of_scene():
         yield f"coefficients.{name}", kind, f"coefficients={{{name}=%s{rest}}}"
 
     # keys of tables of a kind
-    tables = (("method", METHODS), ("damping", VISCOUS), ("water.current", CURRENTS))
+    tables = (
+        ("method", METHODS),
+        ("damping", VISCOUS),
+        ("water.current", CURRENTS),
+        ("control", CONTROLS),
+    )
     for path, classes in (*tables, ("wave", WAVES)):
         for kind, cls in classes.items():
             for key, plain, text in table_of(path, kind, cls) if cls else ():

@@ -605,7 +605,8 @@ def test_numbers_out_of_range_are_refused(make, message):
         ("tank", "tonk", "is of the kind 'tonk'; did you mean 'tank'?"),
         ("rate", "area", "a tank, has the key 'area'; possible: capacity, rate, solid"),
         ('actdim="1"', 'actdim="2"', "keeps 2 states; write actdim='1'"),
-        ('value="t"', 'value="tt"', "ballast 't': geom: the model has no geom named 'tt'; did you"),
+        ('value="t"', 'value="tt"', "geom: the model has no geom named 'tt'"),
+        ('actdim="1"', 'actdim="1" dyntype="integrator"', "has a dyntype, which it does not foll"),
         ('value="0.01"', 'value="fast"', "tank rate is 'fast'; it must be a finite number"),
         ('value="t"', 'value="hull"', ""),
         ('value="t"', 'value="pier"', "names the geom 'pier', whose body cannot move"),
@@ -654,6 +655,19 @@ def test_ballast_that_was_attached_is_in_the_geom_that_came_with_it(affixes):
     assert [name.lstrip("/") for name in names] == [
         f"{prefix}{geom}{suffix}" for geom in ("t", "hold", "hull")
     ]
+
+
+def test_a_command_that_is_no_number_leaves_a_tank_as_it_is():
+    spec = loaded_barge()
+    add_water(spec, Water())
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.act[0] = 0.01
+    for value in (math.nan, math.inf):
+        data.ctrl[0] = value
+        mujoco.mj_step(model, data)
+    assert data.act[0] == 0.01
+    assert data.warning[mujoco.mjtWarning.mjWARN_BADCTRL].number == 2
 
 
 def test_a_body_whose_inertia_is_kept_as_a_diagonal_has_no_room_for_water():

@@ -15,6 +15,12 @@ FINDER = doctest.DocTestFinder(exclude_empty=True)
 WITH_FILES = {"buoyancy_mj.loads.coefficients"}
 """Modules whose examples read files that no user has yet; the guide's own are run by test_docs."""
 
+DRIVEN = tuple(
+    f"buoyancy_mj.{room}."
+    for room in ("vehicle.allocation", "vehicle.control", "vehicle.thrusters", "viz.recorder")
+)
+"""Where examples are of a vehicle in its water that can be driven."""
+
 
 def find_examples():
     """Docstrings with examples, by where they stand."""
@@ -30,14 +36,18 @@ EXAMPLES = list(find_examples())
 
 
 @pytest.fixture
-def names(tmp_path, monkeypatch):
+def names(tmp_path, monkeypatch, example):
     """What a reader of an example has: public names, a model, its data and 'vehicle.xml'."""
-    folder = catalog.models()["hourglass"].parent
-    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
-    (tmp_path / "hourglass.xml").rename(tmp_path / "vehicle.xml")
+    driven = example.name.startswith(DRIVEN)
+    path = catalog.models()["bluerov2_heavy" if driven else "hourglass"]
+    shutil.copytree(path.parent, tmp_path, dirs_exist_ok=True)
+    (tmp_path / path.name).rename(tmp_path / "vehicle.xml")
     monkeypatch.chdir(tmp_path)
-    spec = mujoco.MjSpec.from_file(str(catalog.models()["hourglass"]))
-    model = mujoco.MjModel.from_xml_path(str(catalog.models()["hourglass"]))
+    spec = mujoco.MjSpec.from_file(str(path))
+    if driven:
+        spec.body("bluerov2_heavy").add_site(name="stern")
+        buoyancy_mj.add_water(spec)
+    model = spec.compile()
     public = {name: getattr(buoyancy_mj, name) for name in dir(buoyancy_mj) if name[0] != "_"}
     own = {"mujoco": mujoco, "spec": spec, "model": model, "data": mujoco.MjData(model)}
     return public | own

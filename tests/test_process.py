@@ -98,8 +98,8 @@ def interrupt():
     changed = []
 
     class Raising:
-        def __init__(self, error):
-            self.error = error
+        def __init__(self, error, volumes):
+            self.error, self.volumes = error, volumes
 
         def submerge(self, *_):
             raise self.error
@@ -107,7 +107,7 @@ def interrupt():
     def change(buoyancy, error=KeyboardInterrupt):
         load_model = buoyancy.compiled._load_model
         changed.append((load_model, load_model.packed))
-        object.__setattr__(load_model, "packed", Raising(error))
+        object.__setattr__(load_model, "packed", Raising(error, load_model.packed.volumes))
 
     yield change
     for load_model, packed in changed:

@@ -256,6 +256,17 @@ def test_controls_are_bounded_and_none_is_none():
         assert look(model, math.nan).thrust == 0.0
 
 
+def test_a_lag_does_not_follow_a_control_beyond_what_there_is():
+    for control, most in (("thrust", 51.43587925), ("pwm", 400.0)):
+        model = build(Thruster(preset="t200", control=control, lag=0.1, ventilation=False))
+        model.actuator_ctrllimited[:] = 0
+        data = mujoco.MjData(model)
+        data.ctrl[0] = 1e8
+        for _ in range(200):
+            mujoco.mj_step(model, data)
+        assert data.act[0] == pytest.approx(most, rel=1e-3)
+
+
 # rotors -------------------------------------------------------------------------------------------
 
 

@@ -65,6 +65,10 @@ class Link:
         """Listen no more."""
         self._socket.close()
 
+    def count_anew(self) -> None:
+        """Begin the counts anew, for the next start of an autopilot."""
+        self.malformed = self.skipped = 0
+
     def receive(self, patience: float | None = None) -> Servos | None:
         """Wait for the next packet of an autopilot; of several that wait, the newest.
 

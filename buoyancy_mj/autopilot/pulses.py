@@ -56,6 +56,6 @@ class PulseMap:
         """
         widths = np.array(pulses, dtype=float)[self._indices]
         widths[widths == 0.0] = NEUTRAL
-        throttle = self._signs * np.clip((widths - NEUTRAL) / SPAN, -1.0, 1.0)
+        throttle = self._signs * np.minimum(np.maximum((widths - NEUTRAL) / SPAN, -1.0), 1.0)
         scale = np.where(throttle > 0.0, self._ahead, self._astern)
         ctrl[self._addresses] = self._neutral + throttle * scale

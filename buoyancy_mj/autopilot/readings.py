@@ -16,6 +16,8 @@ FAR = 1.0e4
 """What a range finder tells where it meets nothing [m]: beyond the range of any."""
 ALTIMETER = "buoyancy_mj.altimeter"
 """Plugin of the altimeters, which are range finders too."""
+BATTERY_EVERY = 8
+"""Number of readings for one of the battery."""
 RANGE_FINDERS = 6
 """The most range finders that the JSON interface knows."""
 
@@ -69,6 +71,8 @@ class Readings:
         self._steps = 0
         self._finders = _find_range_finders(model, vehicle)
         self._battery = Battery(model, vehicle)
+        self._drawn: tuple[float, float] | None = None
+        self._reads = 0
 
     def feel(self) -> None:
         """Take the specific force of the step that was just made."""
@@ -105,6 +109,11 @@ class Readings:
         self._felt[:] = 0.0
         self._steps = 0
 
+        # a battery is measured less often
+        if self._reads % BATTERY_EVERY == 0:
+            self._drawn = self._battery.read(self._source)
+        self._reads += 1
+
         # in the frames of aviation
         position = place * HALF_TURN
         position[2] += self._level
@@ -119,7 +128,7 @@ class Readings:
             distances=tuple(
                 d if d >= 0.0 else FAR for d in data.sensordata[self._finders].tolist()
             ),
-            battery=self._battery.read(self._source),
+            battery=self._drawn,
         )
 
 

@@ -247,6 +247,7 @@ def _sum_up(session: Session, link: Link, files: Files, *, as_json: bool) -> Non
         "repeated_packets": session.lockstep.repeated + link.skipped,
         "malformed_packets": link.malformed,
     }
+    link.count_anew()
     if as_json:
         typer.echo(summary_json(session.summary(), files, {"autopilot": counts}))
         return

@@ -40,7 +40,7 @@ class StreamFlags:
                 "65535"
             )
 
-    def open(self, simulation: Simulation, *, paced: bool) -> "RosStream | None":
+    def open(self, simulation: Simulation, *, waits: bool) -> "RosStream | None":
         """Open what was asked for; None for nothing.
 
         Raises:
@@ -58,7 +58,7 @@ class StreamFlags:
         port = (
             (PORT if self.foxglove_port is None else self.foxglove_port) if self.foxglove else None
         )
-        return RosStream(simulation, self.mcap, port=port, paced=paced)
+        return RosStream(simulation, self.mcap, port=port, waits=waits)
 
 
 class Files(NamedTuple):
@@ -81,7 +81,7 @@ class Recordings:
         series: the table; None for none.
         live: whether to stream to a Rerun viewer.
         streams: where the run goes as messages of ROS 2.
-        paced: whether a Foxglove viewer sees no more than real time.
+        waits: whether the run waits for a Foxglove viewer, and goes no faster than real time.
 
     Raises:
         RecordingError: one cannot be made; nothing of the others stays.
@@ -95,10 +95,10 @@ class Recordings:
         *,
         live: bool = False,
         streams: StreamFlags,
-        paced: bool = False,
+        waits: bool = False,
     ) -> None:
         self._simulation = simulation
-        self._stream = streams.open(simulation, paced=paced)
+        self._stream = streams.open(simulation, waits=waits)
         try:
             self._recording, self._series = open_sinks(simulation, record, series, live=live)
         except BaseException:
@@ -107,18 +107,13 @@ class Recordings:
             raise
         if self._stream is not None and self._stream.port is not None:
             place = f"ws://{self._stream.host}:{self._stream.port}"
-            print_line(err, f"open {place} in Foxglove, as a Foxglove WebSocket")
+            wait = "; the run begins when a panel shows something of it" if waits else ""
+            print_line(err, f"open {place} in Foxglove, as a Foxglove WebSocket{wait}")
         sinks = (self._recording, self._series, self._stream)
         self._adders = [sink.add for sink in sinks if sink is not None]
 
     def __bool__(self) -> bool:
         return bool(self._adders)
-
-    def wait_for_viewer(self) -> None:
-        """Wait for a Foxglove viewer, if there is a server for one."""
-        if self._stream is not None and self._stream.port is not None:
-            print_line(err, "waiting for a viewer")
-            self._stream.wait_for_viewer()
 
     def add(self, frame: Frame) -> None:
         """Record one frame.

@@ -71,7 +71,7 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through, trust=flags.trust)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    recordings = Recordings(simulation, target, series, live=live, streams=streams, paced=True)
+    recordings = Recordings(simulation, target, series, live=live, streams=streams, waits=True)
     files = _run_to_end(simulation, recordings)
 
     # its summary
@@ -114,7 +114,6 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
 def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
     """Run to the end, and record; the files."""
     try:
-        recordings.wait_for_viewer()
         _run_frames(simulation, recordings.add)
         return recordings.close(simulation.summary())
     except BaseException:

@@ -178,7 +178,10 @@ def place_ballast(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]
         raise ModelError(f"{what} is not at a site; write site='...', on the body that carries it")
     site = int(model.actuator_trnid[actuator, 0])
     ballast = parse_ballast(texts, str(model.site(site).name) or f"site {site}", what)
-    geom = _find_geom(model, texts["geom"], name)
+    try:
+        geom = find_named(model, mujoco.mjtObj.mjOBJ_GEOM, texts["geom"], name)
+    except ModelError as error:
+        raise ModelError(f"{what}: geom: {error}") from None
     body = int(model.body_weldid[model.geom_bodyid[geom]])
     _check_geom(model, geom, body, what)
     if model.body_weldid[model.site_bodyid[site]] != body:
@@ -218,18 +221,6 @@ def _find_actuator(model: mujoco.MjModel, instance: int) -> int:
             f"one instance of '{PLUGIN}' is that of {names}; give each actuator its own instance"
         )
     return int(actuators[0])
-
-
-def _find_geom(model: mujoco.MjModel, name: str, owner: str) -> int:
-    """The index of the geom that ballast names.
-
-    Raises:
-        ModelError: there is none.
-    """
-    try:
-        return find_named(model, mujoco.mjtObj.mjOBJ_GEOM, name, owner)
-    except ModelError as error:
-        raise ModelError(f"ballast '{owner}': geom: {error}") from None
 
 
 def _check_geom(model: mujoco.MjModel, geom: int, body: int, what: str) -> None:

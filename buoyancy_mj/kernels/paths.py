@@ -3,7 +3,7 @@
 from buoyancy_mj.kernels.arrays import leaves
 from buoyancy_mj.kernels.multibody import Engine, Identity
 from buoyancy_mj.kernels.vehicle.equipment import Equipment
-from buoyancy_mj.kernels.vehicle.thrusters import Surroundings
+from buoyancy_mj.kernels.vehicle.propulsors import Surroundings
 
 PATHS = tuple(
     dict.fromkeys(

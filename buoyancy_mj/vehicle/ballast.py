@@ -68,7 +68,7 @@ def add_ballast(
             a compiled model shows is refused when it is compiled.
 
     Example:
-        >>> add_ballast(spec, "nose", Bladder(capacity=5e-4, rate=2e-5))
+        >>> actuator = add_ballast(spec, "glass", Bladder(capacity=5e-4, rate=2e-5))
     """
     if not isinstance(spec, mujoco.MjSpec):
         raise ModelError(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 ASTERN, AHEAD = 10.5 * 9.80665, 16.1 * 9.80665
-"""Greatest bollard pull [N] at 24 V, from the maker's product page."""
+"""Greatest bollard pull [N] at 24 V, as the maker's product page is quoted by others."""
 VOLTAGE = 24.0
 """Supply [V]."""
 DIAMETER = 0.114
@@ -16,7 +16,7 @@ COEFFICIENT = 0.44
 LEVERS = (0.021, 0.018)
 """Torque of the propeller over its thrust, astern and ahead [m]: that of the T200, by size."""
 CURRENT = 43.5
-"""At full throttle [A], from the maker's product page."""
+"""At full throttle [A], as quoted in the same way."""
 
 
 def t500_rows() -> NDArray[np.float64]:

@@ -13,7 +13,8 @@ from buoyancy_mj.engine.model_memory import read_texts
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.kernels.entries import thrusters as entries
 from buoyancy_mj.kernels.vehicle.devices import Device
-from buoyancy_mj.kernels.vehicle.thrusters import READINGS, Propulsor
+from buoyancy_mj.kernels.vehicle.propulsors import Propulsor
+from buoyancy_mj.kernels.vehicle.thrusters import READINGS
 from buoyancy_mj.vehicle.thruster import Thruster
 from buoyancy_mj.vehicle.thruster_curves import DENSITY
 from buoyancy_mj.vehicle.thruster_texts import KEYS, parse_thruster

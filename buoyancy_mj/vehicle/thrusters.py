@@ -71,7 +71,8 @@ def add_thruster(
 
     Example:
         >>> spec = mujoco.MjSpec.from_file("vehicle.xml")
-        >>> add_thruster(spec, "stern", Thruster(preset="t200", voltage=16.0))
+        >>> site = spec.worldbody.first_body().add_site(name="stern", quat=[0.7, 0.0, 0.7, 0.0])
+        >>> actuator = add_thruster(spec, "stern", Thruster(preset="t200", voltage=16.0))
         >>> model = spec.compile()
     """
     if not isinstance(spec, mujoco.MjSpec):

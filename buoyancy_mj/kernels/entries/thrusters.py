@@ -5,7 +5,7 @@ from numba import int64
 from buoyancy_mj.kernels.entries.views import view, view_engine
 from buoyancy_mj.kernels.sea import Sea
 from buoyancy_mj.kernels.vehicle import thrusters
-from buoyancy_mj.kernels.vehicle.thrusters import Propulsor, Surroundings
+from buoyancy_mj.kernels.vehicle.propulsors import Propulsor, Surroundings
 
 
 def advance_thruster(model: int64, data: int64, thruster: int64) -> int64:

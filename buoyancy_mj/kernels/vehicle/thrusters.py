@@ -1,19 +1,17 @@
 """What a thruster does at one instant: from its command and the water at its disc to its thrust."""
 
 import math
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
-import numpy as np
 from numba import njit
 
-from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import triple
-from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.immersion import ventilated_share, wet_share
 from buoyancy_mj.kernels.vehicle.motion import find_velocity, set_water_velocity
 from buoyancy_mj.kernels.vehicle.open_water import drag_blades, meet_flow
 from buoyancy_mj.kernels.vehicle.rotor import (
+    COMMAND,
     CURRENT,
     SQUARE,
     THRUST,
@@ -36,115 +34,6 @@ TORQUE_LOSS = 0.85
 """What a thruster leaves to be read, and how many numbers: thrust [N], torque of the water against
 the rotor [N m], speed of the rotor [rev/s] and of the flow into it [m/s], wet share, share of the
 thrust that air takes, current [A]."""
-
-
-class Propulsor(NamedTuple):
-    """One thruster of one mjData."""
-
-    device: Device
-    site: int
-    """Index of the site at the middle of its disc, whose z it pushes along."""
-    actuator: int
-    """Index of its actuator."""
-    address: int
-    """Index of its command in `ctrl`."""
-    output: int
-    """Index of its thrust in `actuator_force`."""
-    state: int
-    """Index in `act` of what follows the command with a lag: the speed [rad/s] of a rotor that has
-    inertia, or else the command, from the one at which the rotor stands; -1 for no lag."""
-    air: int
-    """Index in `act` of the share of thrust that air takes; -1 for none."""
-    neutral: float
-    """The command at which the rotor stands."""
-    deadband: float
-    """From there to the first command that is heard."""
-    absent: float
-    """Commands below this are none."""
-    diameter: float
-    """[m]."""
-    density: float
-    """Of the water that the curve is for [kg/m^3]."""
-    lag: float
-    """[s]."""
-    inertia: float
-    """Of the rotor and the water that turns with it [kg m^2]."""
-    limit: float
-    """Torque of the motor at most [N m]."""
-    hand: float
-    """1 for a rotor that turns about +z to push ahead, -1 for the other way, 0 for no torque."""
-    gear: float
-    """Torque about z that the transmission of the actuator has for each newton [m]."""
-    wake: float
-    """Wake fraction."""
-    recovery: float
-    """Revolutions in which air leaves the disc."""
-    drag: float
-    """See `open_water.drag_blades`."""
-    demands: Annotated[Doubles, ("k", 2)]
-    """See `rotor.demand_speed`."""
-    curve: Annotated[Doubles, ("m", 4)]
-    """See `rotor`."""
-    advance: Annotated[Doubles, ("j", 3)]
-    """See `open_water`; no rows for a thrust that no flow changes."""
-    water: Annotated[Doubles, (3,)]
-    """Room for the water's velocity [m/s]."""
-
-
-class Surroundings(NamedTuple):
-    """All that a thruster reads of the engine, and the arrays that it writes to.
-
-    A call hands each array on by seven words, so that these are as few as can be.
-    """
-
-    timestep: Annotated[float, "mjModel.opt"]
-    """[s]."""
-    disableflags: Annotated[np.int32, "mjModel.opt"]
-    """Bits of mjtDisableBit."""
-    integrator: Annotated[np.int32, "mjModel.opt"]
-    """One of mjtIntegrator."""
-    disableactuator: Annotated[np.int32, "mjModel.opt"]
-    """Bits of the groups of actuators that are switched off."""
-    time: Annotated[float, "mjData"]
-    """[s]."""
-    body_rootid: Annotated[Int32s, "mjModel", ("nbody",)]
-    """Root of the kinematic tree of each body."""
-    body_parentid: Annotated[Int32s, "mjModel", ("nbody",)]
-    """Parent of each body."""
-    body_dofnum: Annotated[Int32s, "mjModel", ("nbody",)]
-    """Degrees of freedom of each body's joints."""
-    body_dofadr: Annotated[Int32s, "mjModel", ("nbody",)]
-    """The first of them."""
-    dof_parentid: Annotated[Int32s, "mjModel", ("nv",)]
-    """The next degree of freedom towards the world; -1 for none."""
-    subtree_com: Annotated[Doubles, "mjData", ("nbody", 3)]
-    """Centre of mass of each body and all below it [m]."""
-    cvel: Annotated[Doubles, "mjData", ("nbody", 6)]
-    """Rotation [rad/s], then translation [m/s] at the root's centre of mass."""
-    cdof: Annotated[Doubles, "mjData", ("nv", 6)]
-    """Axes of the degrees of freedom: rotation, then translation there."""
-    site_bodyid: Annotated[Int32s, "mjModel", ("nsite",)]
-    """Body of each site."""
-    site_xpos: Annotated[Doubles, "mjData", ("nsite", 3)]
-    """Origins of the sites [m]."""
-    site_xmat: Annotated[Doubles, "mjData", ("nsite", 9)]
-    """world_from_site, row-major."""
-    actuator_group: Annotated[Int32s, "mjModel", ("nactuator",)]
-    """Groups of the actuators, which an option may switch off."""
-    actuator_ctrllimited: Annotated[Truths, "mjModel", ("nu",)]
-    """Whether the range of commands holds."""
-    actuator_ctrlrange: Annotated[Doubles, "mjModel", ("nu", 2)]
-    """Least and most command."""
-    ctrl: Annotated[Doubles, "mjData", ("nu",)]
-    """Commands."""
-    act: Annotated[Doubles, "mjData", ("na",)]
-    """States of the actuators."""
-    act_dot: Annotated[Doubles, "mjData", ("na",)]
-    """Their rates [1/s]."""
-    actuator_force: Annotated[Doubles, "mjData", ("nout",)]
-    """Forces along the actuators [N]."""
-    qfrc_passive: Annotated[Doubles, "mjData", ("nv",)]
-    """Generalized passive forces."""
 
 
 class Moment(NamedTuple):
@@ -184,7 +73,13 @@ def hear(p, around):
     if clamps and around.actuator_ctrllimited[p.address]:
         bounds = around.actuator_ctrlrange[p.address]
         command = min(max(command, bounds[0]), bounds[1])
-    return command - p.neutral
+
+    # what it has not is not followed either, which would take long to come back from
+    command -= p.neutral
+    last = p.demands.shape[0] - 1
+    if last < 0:
+        return min(max(command, p.curve[0, THRUST]), p.curve[p.curve.shape[0] - 1, THRUST])
+    return min(max(command, p.demands[0, COMMAND]), p.demands[last, COMMAND])
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -42,7 +42,7 @@ class Hold(Control):
         ControlError: a value that makes no sense, or way-points beside a place.
 
     Example:
-        >>> Hold(position=(0.0, 0.0), depth=0.8, heading=0.0)
+        >>> station = Hold(position=(0.0, 0.0), depth=0.8, heading=0.0)
     """
 
     needs_rest: ClassVar[bool] = True

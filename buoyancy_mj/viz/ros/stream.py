@@ -43,14 +43,15 @@ class RosStream:
         run: the run.
         path: the MCAP file; None for none.
         port: where to serve a Foxglove viewer, 0 for any port that is free; None for no server.
-        paced: whether frames come no faster than in real time, while there is a server.
+        waits: whether a run with a server waits after its first frame until a viewer asks for a
+            topic, and then goes no faster than real time.
 
     Raises:
         RecordingError: the file cannot be written, or the port is in use.
     """
 
     def __init__(
-        self, run: Run, path: Path | None = None, *, port: int | None = None, paced: bool = False
+        self, run: Run, path: Path | None = None, *, port: int | None = None, waits: bool = False
     ) -> None:
         self._context = foxglove.Context()
         self._channels: dict[str, foxglove.Channel] = {}
@@ -71,8 +72,8 @@ class RosStream:
             ("/meshes", MARKERS, ros.encode(MARKERS, draw_geoms(run))),
             self._encode(*self._motion.fixed()),
         ]
-        self._paced = paced and self._server is not None
-        self._began = 0.0
+        self._waits = waits and self._server is not None
+        self._began: float | None = None
         self._closed = False
         self._next_sea = self._next_flush = -np.inf
 
@@ -91,9 +92,10 @@ class RosStream:
         """Whether it takes no more."""
         return self._closed
 
-    def wait_for_viewer(self) -> None:
-        """Wait until a viewer has asked for something."""
-        self._viewers.came.wait()
+    @property
+    def has_viewer(self) -> bool:
+        """Whether a viewer has asked for a topic."""
+        return self._viewers.came.is_set()
 
     def add(self, frame: Frame) -> None:
         """Tell one frame.
@@ -101,7 +103,7 @@ class RosStream:
         Raises:
             RecordingError: the disk is full or gone; what was written stays.
         """
-        if self._paced:
+        if self._waits:
             self._pace(frame.time)
         if self._viewers.take_news():
             for name, kind, message in self._still:
@@ -179,12 +181,14 @@ class RosStream:
             f"'{file.take_name(complete=False)}'"
         ) from error
 
-    def _pace(self, time_of_frame: float) -> None:
-        """Wait until a frame is due in real time."""
-        now = time.monotonic()
-        if time_of_frame == 0.0:
-            self._began = now
-        time.sleep(max(0.0, self._began + time_of_frame - now))
+    def _pace(self, now: float) -> None:
+        """Wait until a frame of a time [s] is due; the second waits for a viewer before."""
+        if self._next_sea == -np.inf:
+            return
+        if self._began is None:
+            self._viewers.came.wait()
+            self._began = time.monotonic() - now
+        time.sleep(max(0.0, self._began + now - time.monotonic()))
 
     def _encode(self, name: str, kind: str, message: Any) -> tuple[str, str, bytes]:
         """A message as bytes, with its topic and its type."""
