@@ -652,6 +652,7 @@ def test_numbers_out_of_range_are_refused(make, message):
         ("rate", "area", "a tank, has the key 'area'; possible: capacity, rate, solid"),
         ('actdim="1"', 'actdim="2"', "keeps 2 states; write actdim='1'"),
         ('value="t"', 'value="tt"', "geom: the model has no geom named 'tt'"),
+        ('actdim="1"', 'actdim="1" dyntype="integrator"', "has a dyntype, which it does not foll"),
         ('value="0.01"', 'value="fast"', "tank rate is 'fast'; it must be a finite number"),
         ('value="t"', 'value="hull"', ""),
         ('value="t"', 'value="pier"', "names the geom 'pier', whose body cannot move"),
@@ -687,6 +688,32 @@ def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
         return
     with pytest.raises((ModelError, mujoco.FatalError, ValueError), match=re.escape(message)):
         mujoco.MjData(mujoco.MjModel.from_xml_string(changed))
+
+
+@pytest.mark.parametrize("affixes", [{"prefix": "rov/"}, {"suffix": "_2"}, {"prefix": "a_"}])
+def test_ballast_that_was_attached_is_in_the_geom_that_came_with_it(affixes):
+    parent = mujoco.MjSpec.from_string("<mujoco><option timestep='0.01'/></mujoco>")
+    parent.attach(loaded_barge(), frame=parent.worldbody.add_frame(), **affixes)
+    add_water(parent, Water())
+    model = parent.compile()
+    names = [model.geom(placed.geom).name for placed in find_ballasts(model)]
+    prefix, suffix = affixes.get("prefix", ""), affixes.get("suffix", "")
+    assert [name.lstrip("/") for name in names] == [
+        f"{prefix}{geom}{suffix}" for geom in ("t", "hold", "hull")
+    ]
+
+
+def test_a_command_that_is_no_number_leaves_a_tank_as_it_is():
+    spec = loaded_barge()
+    add_water(spec, Water())
+    model = spec.compile()
+    data = mujoco.MjData(model)
+    data.act[0] = 0.01
+    for value in (math.nan, math.inf):
+        data.ctrl[0] = value
+        mujoco.mj_step(model, data)
+    assert data.act[0] == 0.01
+    assert data.warning[mujoco.mjtWarning.mjWARN_BADCTRL].number == 2
 
 
 def test_a_body_whose_inertia_is_kept_as_a_diagonal_has_no_room_for_water():

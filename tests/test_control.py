@@ -5,6 +5,7 @@ import dataclasses
 import json
 import math
 import re
+import sys
 
 import mujoco
 import numpy as np
@@ -677,6 +678,19 @@ def test_a_program_runs_at_its_rate_for_who_trusts_it(code):
     assert [i for i in range(1, 30) if seen[i] != seen[i - 1]] == [10, 20]
 
 
+def test_a_program_imports_files_beside_it(code):
+    (code / "tuning_beside_it.py").write_text("gain = 3.0\n")
+    (code / "main.py").write_text(
+        "from tuning_beside_it import gain\n\n\ndef update(_, data):\n    data.ctrl[:] = gain\n"
+    )
+    before = list(sys.path)
+    control = {"kind": "file", "file": "main.py:update"}
+    simulation = controlled(control, folder=code, trust=True)
+    simulation.step()
+    assert simulation.data.ctrl[0] == 3.0
+    assert sys.path == before
+
+
 def test_a_program_that_fails_is_told_with_time_and_name_and_the_recording_is_kept(
     code, monkeypatch
 ):
@@ -735,7 +749,8 @@ def test_a_program_needs_a_file_and_a_function():
         ({"kind": "pid"}, "scene: control: unknown kind 'pid'; possible: file, hold, keyframes"),
         (
             {"kind": "hold", "dept": 1.0},
-            "scene: control: unknown key 'dept'; did you mean 'depth'? possible: bandwidth,",
+            "scene: control: unknown key 'dept'; did you mean 'depth'? possible: bandwidth, depth, "
+            "depth_gains, free, heading, heading_gains, kind, pitch_gains, position,",
         ),
         ({"kind": "hold", "depth": "deep"}, "scene: control: depth is 'deep'; needed is a number"),
         ({"kind": "hold", "speed": -1}, "scene: control: speed is -1.0; it must be above 0"),

@@ -1,5 +1,6 @@
 """Plugins of the vehicle: they find the water that acts, wherever MuJoCo steps."""
 
+import gc
 import pickle
 
 import mujoco
@@ -116,3 +117,17 @@ def test_devices_of_an_attached_model_are_read_under_their_prefix():
     parent.attach(child, prefix="rov/", frame=parent.worldbody.add_frame(pos=[0, 0, -1]))
     data = run(parent.compile(), 1)
     assert data.sensor("rov/depth").data[0] == pytest.approx(1.05, abs=0.01)
+
+
+def test_water_that_was_called_is_there_no_more_when_it_is_gone():
+    model = mujoco.MjModel.from_xml_string(BUOY)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    water = Buoyancy(model, Water())
+    water(model, data)
+    mujoco.mj_forward(model, data)
+    assert np.isfinite(data.sensor("depth").data[0])
+    del water
+    gc.collect()
+    mujoco.mj_forward(model, data)
+    assert data.sensor("depth").data[0] == -np.inf

@@ -598,6 +598,6 @@ def test_a_model_without_an_arena_is_refused():
     with pytest.raises(
         ModelError,
         match=r"^the model has no arena of the challenge, known by the sites 'pool' and "
-        r"'start_zone'; put one sauvc_arena\(\) into it$",
+        r"'start_zone'; put one sauvc_arena\(\) into it, or environment = 'sauvc_course' into a",
     ):
         mission(model, mujoco.MjData(model))

@@ -346,6 +346,10 @@ PLUGIN = """
     ("rest", "message"),
     [
         ('objtype="body" objname="b">', "sensor 'd' is at a body; buoyancy_mj.depth reads at a si"),
+        (
+            'objtype="site" objname="s" reftype="site" refname="s">',
+            "sensor 'd' has a reftype and a refname, which buoyancy_mj.depth does not read; remove",
+        ),
         ('objtype="site" objname="s" noise="1">', "unrecognized attribute: 'noise'"),
         (
             'objtype="site" objname="s"><config key="noise" value="-1"/>',

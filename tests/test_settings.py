@@ -33,6 +33,7 @@ from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import KEYS
 from buoyancy_mj.settings import config
 from buoyancy_mj.settings.settings import PRESSURES, Options
+from buoyancy_mj.settings.texts import parse_value
 from tests import vessels
 
 PUBLIC_DATACLASSES = [
@@ -289,3 +290,20 @@ def test_the_old_name_of_a_key_says_the_new_one():
         match="scene 'auv_waves': unknown key 'drag'; it is 'damping' now; possible: added_mass",
     ):
         read_scene(catalog.scenes()["auv_waves"], ["drag=false"])
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        (".5", 0.5),
+        ("-.5", -0.5),
+        ("1.", 1.0),
+        ("1.e3", 1000.0),
+        ("[[0,.5],[1.,2]]", [[0, 0.5], [1.0, 2]]),
+        (".5.1", ".5.1"),
+        (".", "."),
+        ("a.5", "a.5"),
+    ],
+)
+def test_numbers_are_read_as_mjcf_may_have_them(text, value):
+    assert parse_value(text, "noise") == value

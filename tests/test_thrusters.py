@@ -259,6 +259,17 @@ def test_controls_are_bounded_and_none_is_none():
         assert look(model, math.nan).thrust == 0.0
 
 
+def test_a_lag_does_not_follow_a_control_beyond_what_there_is():
+    for control, most in (("thrust", 51.43587925), ("pwm", 400.0)):
+        model = build(Thruster(preset="t200", control=control, lag=0.1, ventilation=False))
+        model.actuator_ctrllimited[:] = 0
+        data = mujoco.MjData(model)
+        data.ctrl[0] = 1e8
+        for _ in range(200):
+            mujoco.mj_step(model, data)
+        assert data.act[0] == pytest.approx(most, rel=1e-3)
+
+
 # rotors -------------------------------------------------------------------------------------------
 
 
@@ -632,6 +643,11 @@ OPEN = {"diameter": 0.1, "speed": 100.0}
                                                "possible: pwm, speed, throttle, thrust"),
         ({"preset": "t200", "lag": -1.0}, "thruster lag is -1.0; it must be at least 0 and at most "
                                           "1000"),
+        ({"preset": "t200", "lag": None}, "thruster lag is None; it must be a finite number"),
+        ({"open_water": None, **OPEN}, "thruster open_water is None; it must be numbers of shape "
+                                       "(n, 3)"),
+        ({"bollard": np.zeros((0, 4))}, "a thruster states neither preset nor table; state one of "
+                                        "preset (t200, t500, b_series), open_water, bollard"),
         ({"preset": "t200", "lag": math.nan}, "thruster lag is nan; it must be a finite number"),
         ({"preset": "t200", "voltage": 25}, "voltage is 25; it must be at least 10 and at most 20"),
         ({"preset": "t200", "speed": 9.0}, "thruster speed is 9.0, which says nothing beside "
@@ -689,6 +705,13 @@ def test_a_thruster_that_makes_no_sense_is_refused(fields, message):
         ('actdim="1"', 'actdim="1" forcerange="-1 1" forcelimited="true"',
          "thruster 'main' has a forcerange, which would leave its torque as it was; remove it, and "
          "bound its control (ctrlrange)"),
+        ("-.012", "nan",
+         "thruster 'main' has the gear '0 0 1 0 0 nan'; it must be '0 0 1 0 0 Q', with the torque "
+         "of reaction Q for each newton: below 0 for a right-handed propeller, 0 for none"),
+        ('actdim="1"', 'actdim="1" dyntype="integrator"',
+         "thruster 'main' has a dyntype, which it does not follow; remove it, and state lag"),
+        ('actdim="1"', 'actdim="1" actearly="true"',
+         "thruster 'main' has actearly, which it does not follow; remove it"),
     ],
 )  # fmt: skip
 def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
@@ -707,6 +730,10 @@ def test_mjcf_that_makes_no_sense_is_refused(old, new, message):
         ({"site": "bow", "name": "stern"}, "the model already has an actuator or a plugin instance "
                                            "'stern'; give the thruster another name (name=)"),
         ({"site": "bow", "hand": "up"}, "thruster hand is 'up'; possible: left, none, right"),
+        ({"site": "bow", "hand": ["up"]}, "thruster hand is ['up']; possible: left, none, right"),
+        ({"site": "bow", "name": 3}, "name of the thruster is 3; it must be a text"),
+        ({"site": "bow", "thruster": "t200"}, "thruster is 't200'; it must be a Thruster, as "
+                                              "Thruster(preset='t200')"),
     ],
 )  # fmt: skip
 def test_a_place_that_makes_no_sense_is_refused(arguments, message):
@@ -715,5 +742,10 @@ def test_a_place_that_makes_no_sense_is_refused(arguments, message):
     ))  # fmt: skip
     add_thruster(spec, "stern", Thruster(preset="t200"))
     with pytest.raises(ModelError) as refused:
-        add_thruster(spec, thruster=Thruster(preset="t200"), **arguments)
+        add_thruster(spec, **({"thruster": Thruster(preset="t200")} | arguments))
     assert str(refused.value) == message
+
+
+def test_a_table_may_be_an_array():
+    rows = [(0.0, 0.4, 0.05), (1.0, 0.0, 0.01)]
+    assert Thruster(open_water=np.array(rows), **OPEN) == Thruster(open_water=rows, **OPEN)

@@ -33,10 +33,11 @@ DEVICE_ARRAYS = (
     "geom_quat", "geom_dataid", "site_bodyid", "site_pos", "site_quat", "site_size",
     "actuator_plugin", "actuator_trntype", "actuator_trnid", "actuator_gear", "actuator_ctrlrange",
     "actuator_ctrllimited", "actuator_actadr", "actuator_actnum", "actuator_ctrladr",
-    "actuator_outadr", "actuator_forcelimited", "actuator_delay",
+    "actuator_outadr", "actuator_forcelimited", "actuator_delay", "actuator_dyntype",
+    "actuator_actearly",
     "mesh_vertadr", "mesh_vertnum", "mesh_vert", "mesh_faceadr", "mesh_facenum", "mesh_face",
     "body_dofnum", "jnt_bodyid",
-    "sensor_plugin", "sensor_objtype", "sensor_objid", "sensor_adr", "sensor_dim",
+    "sensor_plugin", "sensor_objtype", "sensor_objid", "sensor_refid", "sensor_adr", "sensor_dim",
     "plugin_stateadr", "plugin_statenum",
     "numeric_adr", "numeric_size", "numeric_data", "text_adr", "text_size", "text_data",
 )  # fmt: skip

@@ -45,6 +45,12 @@ def note_called(water: ActingWater) -> None:
     if _called.get(water.model._address) is not water:
         _called[water.model._address] = water
         _changes[0] += 1
+        weakref.finalize(water, _note_gone).atexit = False
+
+
+def _note_gone() -> None:
+    """A water that somebody called is gone."""
+    _changes[0] += 1
 
 
 def find_acting_water(address: int, model: mujoco.MjModel) -> ActingWater | None:

@@ -252,6 +252,8 @@ def _check_capacity(model: mujoco.MjModel, placed: PlacedBallast, what: str) -> 
             f"{what} has a capacity of {stated:g} m^3, and its geom '{name}' a volume of "
             f"{volume:g} m^3; give it at most that, or make the geom larger"
         )
+    if model.actuator_dyntype[placed.actuator] != mujoco.mjtDyn.mjDYN_NONE:
+        raise ModelError(f"{what} has a dyntype, which it does not follow; remove it")
     states = model.actuator_actnum[placed.actuator]
     if states != 1:
         raise ModelError(f"{what} keeps {states} states; write actdim='1', for its volume alone")

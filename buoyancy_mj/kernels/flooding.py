@@ -39,6 +39,9 @@ def find_flow(
     if ballast.kinds[n] != COMPARTMENT:
         u = ballast.addresses[n]
         wanted = commands.ctrl[u]
+        # no number is no command
+        if not math.isfinite(wanted):
+            return 0.0
         if commands.actuator_ctrllimited[u]:
             low, high = commands.actuator_ctrlrange[u, 0], commands.actuator_ctrlrange[u, 1]
             wanted = min(max(wanted, low), high)

@@ -1,5 +1,6 @@
 """Controllers of a scene, from tables of plain values as TOML has them."""
 
+import dataclasses
 from collections.abc import Mapping
 from typing import Any
 
@@ -73,9 +74,9 @@ def _control_from_table(value: Any, where: str) -> Control:
     fields: dict[str, Any] = {}
     if kind == "hold":
         fields = _read_inner_tables(table, where)
+        known = [*(field.name for field in dataclasses.fields(Hold)), "kind"]
         for key in table:
-            if key not in Hold.__dataclass_fields__:
-                known = (*Hold.__dataclass_fields__, "kind")
+            if key not in known:
                 raise SceneTypeError(f"{where}: unknown key {describe(key)}; {choices(key, known)}")
     return build(CONTROLS[kind], table, where, **fields)
 

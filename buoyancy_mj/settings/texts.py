@@ -1,13 +1,22 @@
 """Values and tables as short texts without blanks inside a value, and back."""
 
+import contextlib
 import dataclasses
 import math
+import re
 import tomllib
 from collections.abc import Sequence
 from typing import Any
 
 from buoyancy_mj.errors import SceneError, describe
 from buoyancy_mj.values import read_text
+
+_NUMBERS = re.compile(r"[-+.,\s\d\[\]eE]+")
+"""A number, or lists of numbers."""
+_LEADING = re.compile(r"(?<![\d_])\.(?=\d)")
+"""A point with no digit before it."""
+_TRAILING = re.compile(r"(?<=\d)\.(?!\d)")
+"""A point with no digit behind it."""
 
 
 def parse_toml(text: str, where: str) -> dict[str, Any]:
@@ -44,7 +53,7 @@ def parse_value(text: str, where: str) -> Any:
     try:
         return tomllib.loads(f"value = {line}")["value"]
     except tomllib.TOMLDecodeError:
-        return line.strip()
+        return _read_bare_points(line.strip())
     except (ValueError, RecursionError) as error:
         raise SceneError(f"{where} is {describe(text)}: {_explain(error)}") from error
 
@@ -103,6 +112,15 @@ def format_table(
         if field.name not in leave_out and (defaults or item != field.default):
             words.append(f"{field.name}={format_value(item)}")
     return " ".join(words)
+
+
+def _read_bare_points(text: str) -> Any:
+    """Numbers as MJCF may have them, '.5' or '1.', which TOML has not; or the text itself."""
+    if _NUMBERS.fullmatch(text):
+        digits = _LEADING.sub("0.", _TRAILING.sub(".0", text))
+        with contextlib.suppress(tomllib.TOMLDecodeError):
+            return tomllib.loads(f"value = {digits}")["value"]
+    return text
 
 
 def _find_cause(text: str, error: Exception) -> str:

@@ -38,6 +38,7 @@ from buoyancy_mj.kernels.entries import ballast as entries
 from buoyancy_mj.kernels.entries.ballast import BallastDevice
 from buoyancy_mj.loads.ballast_arrays import gather_ballast
 from buoyancy_mj.loads.full_inertia import keep_full_inertia
+from buoyancy_mj.values import read_text
 
 
 def add_ballast(
@@ -84,7 +85,7 @@ def add_ballast(
             f"the geom '{shape.name}' is fixed to the world, where ballast moves nothing; "
             "name one of a body that can move"
         )
-    name = name or shape.name
+    name = read_text(ModelError, "name of the ballast", name or shape.name)
     taken = {actuator.name for actuator in spec.actuators}
     instances = {plugin.name for plugin in spec.plugins}
     if name in taken | instances:

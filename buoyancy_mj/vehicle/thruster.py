@@ -122,13 +122,13 @@ class Thruster:
                 f"thruster preset is {describe(self.preset)}; {choices(self.preset, PRESETS)}"
             )
         for name, bounds in _BOUNDS.items():
-            if getattr(self, name) is not None:
+            if getattr(self, name) is not None or getattr(Thruster, name) is not None:
                 set_number(self, ModelError, name, prefix="thruster ", **bounds)
         truth = read_truth(ModelError, "thruster ventilation", self.ventilation)
         object.__setattr__(self, "ventilation", truth)
         for name, columns in _COLUMNS.items():
-            if getattr(self, name):
-                value = getattr(self, name)
+            value = getattr(self, name)
+            if not (isinstance(value, list | tuple) and len(value) == 0):
                 rows = read_array(ModelError, f"thruster {name}", value, (ANY, columns))
                 object.__setattr__(self, name, tuple(map(tuple, rows.tolist())))
         self._check_source()

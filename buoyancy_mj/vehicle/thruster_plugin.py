@@ -135,7 +135,7 @@ def _is_thruster(model: mujoco.MjModel, actuator: int, other: int) -> bool:
 def _check_gear(model: mujoco.MjModel, actuator: int, where: str) -> None:
     """Refuse a transmission that does not carry a thrust along z of the site."""
     gear = model.actuator_gear[model.actuator_outadr[actuator]].tolist()
-    if gear[:5] != [0.0, 0.0, 1.0, 0.0, 0.0]:
+    if gear[:5] != [0.0, 0.0, 1.0, 0.0, 0.0] or not math.isfinite(gear[5]):
         words = " ".join(f"{number:g}" for number in gear)
         raise ModelError(
             f"{where} has the gear '{words}'; it must be '0 0 1 0 0 Q', with the torque of "
@@ -158,6 +158,12 @@ def _check_states(model: mujoco.MjModel, actuator: int, thruster: Thruster, wher
         raise ModelError(
             f'{where} has actdim {got}; it keeps {kept}, so write actdim="{len(states)}"'
         )
+    if model.actuator_dyntype[actuator] != mujoco.mjtDyn.mjDYN_NONE:
+        raise ModelError(
+            f"{where} has a dyntype, which it does not follow; remove it, and state lag"
+        )
+    if model.actuator_actearly[actuator]:
+        raise ModelError(f"{where} has actearly, which it does not follow; remove it")
     if thruster.inertia and model.actuator_gear[model.actuator_outadr[actuator], 5] == 0.0:
         raise ModelError(
             f"{where} states inertia, but its gear has no torque that tells its hand; "

@@ -10,6 +10,7 @@ from buoyancy_mj.engine.devices import read_device
 from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.kernels.vehicle import thrusters as kernel
 from buoyancy_mj.kernels.vehicle.rotor import THRUST, TORQUE
+from buoyancy_mj.values import read_text
 from buoyancy_mj.vehicle.thruster import Thruster
 from buoyancy_mj.vehicle.thruster_plugin import PLUGIN, read_thruster
 from buoyancy_mj.vehicle.thruster_texts import write_thruster
@@ -76,12 +77,16 @@ def add_thruster(
     """
     if not isinstance(spec, mujoco.MjSpec):
         raise ModelError(f"spec is {describe(spec)}; it must be an MjSpec")
-    if hand not in HANDS:
+    if not isinstance(thruster, Thruster):
+        raise ModelError(
+            f"thruster is {describe(thruster)}; it must be a Thruster, as Thruster(preset='t200')"
+        )
+    if hand not in tuple(HANDS):
         raise ModelError(f"thruster hand is {describe(hand)}; {choices(hand, HANDS)}")
     sites = [str(one.name) for one in spec.sites if one.name]
     if site not in sites:
         raise ModelError(f"the model has no site {describe(site)}; {choices(site, sites)}")
-    name = site if name is None else name
+    name = read_text(ModelError, "name of the thruster", site if name is None else name)
     if any(str(plugin.name) == name for plugin in spec.plugins) or spec.actuator(name) is not None:
         raise ModelError(
             f"the model already has an actuator or a plugin instance '{name}'; "

@@ -133,7 +133,7 @@ def _find_prefix(model: mujoco.MjModel) -> str:
         number = "no arena" if not prefixes else f"{len(prefixes)} arenas"
         raise ModelError(
             f"the model has {number} of the challenge, known by the sites 'pool' and 'start_zone'; "
-            "put one sauvc_arena() into it"
+            "put one sauvc_arena() into it, or environment = 'sauvc_course' into a scene"
         )
     return prefixes[0]
 

@@ -11,6 +11,7 @@ from buoyancy_mj.kernels.vehicle.immersion import ventilated_share, wet_share
 from buoyancy_mj.kernels.vehicle.motion import find_velocity, set_water_velocity
 from buoyancy_mj.kernels.vehicle.open_water import drag_blades, meet_flow
 from buoyancy_mj.kernels.vehicle.rotor import (
+    COMMAND,
     CURRENT,
     SQUARE,
     THRUST,
@@ -72,7 +73,13 @@ def hear(p, around):
     if clamps and around.actuator_ctrllimited[p.address]:
         bounds = around.actuator_ctrlrange[p.address]
         command = min(max(command, bounds[0]), bounds[1])
-    return command - p.neutral
+
+    # what it has not is not followed either, which would take long to come back from
+    command -= p.neutral
+    last = p.demands.shape[0] - 1
+    if last < 0:
+        return min(max(command, p.curve[0, THRUST]), p.curve[p.curve.shape[0] - 1, THRUST])
+    return min(max(command, p.demands[0, COMMAND]), p.demands[last, COMMAND])
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -1,5 +1,6 @@
 """`Program`: a controller of the user's own, from a Python file."""
 
+import contextlib
 import dataclasses
 import sys
 import types
@@ -63,17 +64,26 @@ class Program(Control):
 
 
 def _run_file(path: Path) -> dict[str, Any]:
-    """Run a Python file as a module of its own; its names."""
+    """Run a Python file as a module of its own; its names.
+
+    What it imports from its folder, it imports when it is run.
+    """
     module = types.ModuleType(f"controller {path.stem}")
     module.__file__ = str(path)
     # dataclasses look their module up
     sys.modules[module.__name__] = module
+    # and files import their neighbours, as those that Python is started with
+    folder = str(path.parent.resolve())
+    sys.path.insert(0, folder)
     try:
         exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
     except Exception as error:
         raise ControlError(
             f"the controller '{path}' cannot be run: {type(error).__name__}: {error}"
         ) from error
+    finally:
+        with contextlib.suppress(ValueError):
+            sys.path.remove(folder)
     return vars(module)
 
 

@@ -2,5 +2,5 @@
 
 In: settings, or keys of MJCF, and the site of a sensor.
 Out: elements of a spec, and what compiled code knows of each sensor.
-May import: engine, settings, hulls, kernels, values, errors; `vehicle.references`.
+May import: engine, settings, hulls, kernels, values, errors.
 """

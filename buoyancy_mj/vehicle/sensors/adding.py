@@ -10,6 +10,7 @@ from buoyancy_mj.engine.device_kinds import device_instances, kind_of
 from buoyancy_mj.engine.named_instances import add_instance
 from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.kernels.vehicle.sensors.sampling import STREAM
+from buoyancy_mj.values import read_text
 from buoyancy_mj.vehicle.sensors.sampling import SiteSensor
 from buoyancy_mj.vehicle.sensors.texts import format_sensor
 
@@ -51,6 +52,7 @@ def add_sensor(spec: mujoco.MjSpec, site: str, sensor: SiteSensor, name: str | N
             f"the model has no site {describe(site)} for a sensor; {choices(site, sites)}"
         )
     chosen = sensor.KIND.plugin.rpartition(".")[2] if name is None else name
+    read_text(ModelError, "name of a sensor", chosen)
     if any(other.name == chosen for other in spec.sensors):
         raise ModelError(
             f"the model already has a sensor '{chosen}'; give this one another name (name=)"

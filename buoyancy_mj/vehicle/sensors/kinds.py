@@ -105,6 +105,10 @@ def _find_place(model: mujoco.MjModel, instance: int, plugin: str) -> Place:
             f"{where} is at {'nothing' if is_at == 'unknown' else f'a {is_at}'}; {plugin} reads at "
             'a site, so write objtype="site" and the name of one as objname'
         )
+    if model.sensor_refid[sensor] >= 0:
+        raise ModelError(
+            f"{where} has a reftype and a refname, which {plugin} does not read; remove them"
+        )
     site = int(model.sensor_objid[sensor])
     name = str(model.sensor(sensor).name or model.site(site).name)
     return Place(model, sensor, name, where, site, int(model.site_bodyid[site]))
