@@ -104,11 +104,11 @@ from buoyancy_mj.vehicle.sensors.surface import Elevation as Elevation
 from buoyancy_mj.vehicle.sensors.surface import Wet as Wet
 from buoyancy_mj.vehicle.sensors.velocities import SpeedThroughWater as SpeedThroughWater
 from buoyancy_mj.vehicle.sensors.velocities import WaterVelocity as WaterVelocity
-from buoyancy_mj.vehicle.thruster import Thruster as Thruster
-from buoyancy_mj.vehicle.thrusters import ThrusterReading as ThrusterReading
-from buoyancy_mj.vehicle.thrusters import add_thruster as add_thruster
-from buoyancy_mj.vehicle.thrusters import find_thruster as find_thruster
-from buoyancy_mj.vehicle.thrusters import read_thrusters as read_thrusters
+from buoyancy_mj.vehicle.thrusters.adding import ThrusterReading as ThrusterReading
+from buoyancy_mj.vehicle.thrusters.adding import add_thruster as add_thruster
+from buoyancy_mj.vehicle.thrusters.adding import find_thruster as find_thruster
+from buoyancy_mj.vehicle.thrusters.adding import read_thrusters as read_thrusters
+from buoyancy_mj.vehicle.thrusters.thruster import Thruster as Thruster
 from buoyancy_mj.viz.recorder import Recorder as Recorder
 
 __version__ = _version("buoyancy_mj")

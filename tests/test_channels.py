@@ -6,9 +6,9 @@ import pytest
 
 from buoyancy_mj import Tank, add_ballast
 from buoyancy_mj.vehicle import channels
-from buoyancy_mj.vehicle.channels import describe_sensor
-from buoyancy_mj.vehicle.engine_sensors import Component
-from buoyancy_mj.vehicle.instruments import Instruments
+from buoyancy_mj.vehicle.instruments.channels import describe_sensor
+from buoyancy_mj.vehicle.instruments.engine_sensors import Component
+from buoyancy_mj.vehicle.instruments.instruments import Instruments
 from buoyancy_mj.vehicle.sensors.kinds import CHANNELS
 
 MODEL = """<mujoco><extension><plugin plugin="mujoco.sensor.touch_grid"/></extension>

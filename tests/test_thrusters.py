@@ -22,8 +22,8 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.kernels.vehicle.immersion import ventilated_share, wet_share
 from buoyancy_mj.kernels.vehicle.open_water import meet_flow
-from buoyancy_mj.vehicle.thruster_texts import parse_thruster, write_thruster
-from buoyancy_mj.vehicle.wageningen import wageningen
+from buoyancy_mj.vehicle.thrusters.texts import parse_thruster, write_thruster
+from buoyancy_mj.vehicle.thrusters.wageningen import wageningen
 from tests import naive
 
 STATE = mujoco.mjtState.mjSTATE_FULLPHYSICS

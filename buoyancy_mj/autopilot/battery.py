@@ -6,7 +6,7 @@ from buoyancy_mj.autopilot.thrusters import find_actuators
 from buoyancy_mj.engine.devices import read_device
 from buoyancy_mj.kernels.vehicle.thrusters import READ_CURRENT
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.vehicle.thrusters import find_thruster
+from buoyancy_mj.vehicle.thrusters.adding import find_thruster
 
 
 class Battery:

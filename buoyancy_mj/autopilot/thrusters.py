@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.autopilot.imu import HALF_TURN, find_imu, imu_pose
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.vehicle.channels import actuator_name
 from buoyancy_mj.vehicle.drives import find_pushing
+from buoyancy_mj.vehicle.instruments.channels import actuator_name
 
 _JOINTS = (mujoco.mjtTrn.mjTRN_JOINT, mujoco.mjtTrn.mjTRN_JOINTINPARENT)
 

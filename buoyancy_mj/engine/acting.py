@@ -14,6 +14,7 @@ from buoyancy_mj.engine.checks import check_data
 from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.forks import make_lock
 from buoyancy_mj.engine.load_model import LoadModel, build_load_model
+from buoyancy_mj.errors import EngineError
 from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.kernels.passes import DATA, Record
 from buoyancy_mj.settings.settings import Settings
@@ -115,6 +116,26 @@ class ActingWater:
                 return None
             age = abs(data.time - record.instant[0])
             return record if age <= 1.001 * data.model.opt.timestep else None
+
+    def record_of_now(self, data: mujoco.MjData) -> Record:
+        """What the last pass over `data` left, which hold its poses still.
+
+        Raises:
+            ModelError: the data are of another model.
+            EngineError: there was none at their time, or they hold other poses.
+        """
+        record = self.last_record(data)
+        if record is None:
+            raise EngineError(
+                f"this water has not acted on these data at their time, {data.time:g} s; "
+                "step them while it acts, call mj_forward, or use evaluate"
+            )
+        if not np.array_equal(record.xipos, data.xipos, equal_nan=True):
+            raise EngineError(
+                "the bodies of these data are elsewhere than in the last pass of this water; "
+                "call mj_forward while it acts, or use evaluate"
+            )
+        return record
 
     @functools.cached_property
     def compiled(self) -> CompiledWater:

@@ -27,7 +27,6 @@ from buoyancy_mj.engine.compiled import CompiledWater
 from buoyancy_mj.engine.finding import keep_installed
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.readout import read_loads
-from buoyancy_mj.errors import EngineError
 from buoyancy_mj.hulls.bodies import group_floating_bodies
 from buoyancy_mj.hulls.gravity import read_gravity
 from buoyancy_mj.hulls.hull import Hull
@@ -269,18 +268,7 @@ class Buoyancy(ReadOnly):
                 hold other poses now.
         """
         with self._acting.lock:
-            record = self._acting.last_record(data)
-            if record is None:
-                raise EngineError(
-                    f"this water has not acted on these data at their time, {data.time:g} s; "
-                    "step them while it acts, call mj_forward, or use evaluate"
-                )
-            if not np.array_equal(record.xipos, data.xipos, equal_nan=True):
-                raise EngineError(
-                    "the bodies of these data are elsewhere than in the last pass of this water; "
-                    "call mj_forward while it acts, or use evaluate"
-                )
-            return self._read(record, data)
+            return self._read(self._acting.record_of_now(data), data)
 
     @property
     def acting(self) -> ActingWater:

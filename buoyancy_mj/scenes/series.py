@@ -11,7 +11,7 @@ from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.scenes.series_file import Column, SeriesFile
-from buoyancy_mj.vehicle.instruments import Instruments
+from buoyancy_mj.vehicle.instruments.instruments import Instruments
 
 _AXES = ("x", "y", "z")
 _ANGLES = ("roll", "pitch", "yaw")

@@ -15,9 +15,9 @@ from buoyancy_mj.engine.buoyancy import Buoyancy
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.validation.case import Case, Row
 from buoyancy_mj.validation.runs import numeric
-from buoyancy_mj.vehicle.thruster import Thruster
-from buoyancy_mj.vehicle.thrusters import add_thruster, read_thrusters
-from buoyancy_mj.vehicle.wageningen import wageningen
+from buoyancy_mj.vehicle.thrusters.adding import add_thruster, read_thrusters
+from buoyancy_mj.vehicle.thrusters.thruster import Thruster
+from buoyancy_mj.vehicle.thrusters.wageningen import wageningen
 
 T200 = {
     (12, 1900): (2994.6, 3.714),

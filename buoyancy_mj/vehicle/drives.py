@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.engine.device_kinds import kind_of
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.ballasts import PLUGIN as BALLAST
-from buoyancy_mj.vehicle.thruster import Thruster
-from buoyancy_mj.vehicle.thrusters import find_thruster
+from buoyancy_mj.vehicle.thrusters.adding import find_thruster
+from buoyancy_mj.vehicle.thrusters.thruster import Thruster
 
 _STEADY = (
     int(mujoco.mjtDyn.mjDYN_NONE),

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import rerun as rr
 
-from buoyancy_mj.vehicle.instruments import ACTIVATION, CONTROL, FORCE, SENSOR, Channel
+from buoyancy_mj.vehicle.instruments.instruments import ACTIVATION, CONTROL, FORCE, SENSOR, Channel
 from buoyancy_mj.viz.plots import hue
 
 TITLES = {

@@ -16,7 +16,7 @@ from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.scenes.summary import Summary
-from buoyancy_mj.vehicle.instruments import Instruments
+from buoyancy_mj.vehicle.instruments.instruments import Instruments
 from buoyancy_mj.viz import instruments, plots
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
-from buoyancy_mj.vehicle.channels import actuator_name
 from buoyancy_mj.vehicle.drives import find_pushing
+from buoyancy_mj.vehicle.instruments.channels import actuator_name
 from buoyancy_mj.viz.framing import arrow_scale
 from buoyancy_mj.viz.log import Log
 

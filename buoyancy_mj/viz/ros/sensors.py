@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.engine.instances import plugin_name
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
-from buoyancy_mj.vehicle.channels import sensor_name
+from buoyancy_mj.vehicle.instruments.channels import sensor_name
 from buoyancy_mj.viz.ros import messages as ros
 from buoyancy_mj.viz.ros.motion import Message
 from buoyancy_mj.viz.ros.names import body_frame, site_frame, topic

@@ -7,10 +7,10 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.vehicle.channels import actuator_name, describe_sensor, sensor_name
 from buoyancy_mj.vehicle.drives import is_ballast
-from buoyancy_mj.vehicle.engine_sensors import one, repeat_components
-from buoyancy_mj.vehicle.transmissions import transmission_units
+from buoyancy_mj.vehicle.instruments.channels import actuator_name, describe_sensor, sensor_name
+from buoyancy_mj.vehicle.instruments.engine_sensors import one, repeat_components
+from buoyancy_mj.vehicle.instruments.transmissions import transmission_units
 
 SENSOR, CONTROL, FORCE, ACTIVATION = "sensor", "control", "force", "activation"
 """Kinds of channels."""

@@ -6,7 +6,12 @@ from typing import NamedTuple
 
 import mujoco
 
-from buoyancy_mj.vehicle.transmissions import Units, joint_units, tendon_units, transmission_units
+from buoyancy_mj.vehicle.instruments.transmissions import (
+    Units,
+    joint_units,
+    tendon_units,
+    transmission_units,
+)
 
 _SENSOR = mujoco.mjtSensor
 

@@ -3,7 +3,7 @@
 import mujoco
 
 from buoyancy_mj.engine.instances import plugin_name
-from buoyancy_mj.vehicle.engine_sensors import (
+from buoyancy_mj.vehicle.instruments.engine_sensors import (
     Component,
     one,
     read_components,

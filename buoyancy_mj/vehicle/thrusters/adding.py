@@ -11,9 +11,9 @@ from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.kernels.vehicle import thrusters as kernel
 from buoyancy_mj.kernels.vehicle.rotor import THRUST, TORQUE
 from buoyancy_mj.values import read_text
-from buoyancy_mj.vehicle.thruster import Thruster
-from buoyancy_mj.vehicle.thruster_plugin import PLUGIN, read_thruster
-from buoyancy_mj.vehicle.thruster_texts import write_thruster
+from buoyancy_mj.vehicle.thrusters.plugin import PLUGIN, read_thruster
+from buoyancy_mj.vehicle.thrusters.texts import write_thruster
+from buoyancy_mj.vehicle.thrusters.thruster import Thruster
 
 HANDS = {"right": 1.0, "left": -1.0, "none": 0.0}
 """Ways a propeller may turn, and the sign of its rotation about z of its site to push along z."""

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from buoyancy_mj.errors import ModelError, choices, describe
 from buoyancy_mj.kernels.vehicle.rotor import THRUST
 from buoyancy_mj.values import ANY, read_array, read_truth, set_number
-from buoyancy_mj.vehicle import t200, t500
-from buoyancy_mj.vehicle.thruster_curves import (
+from buoyancy_mj.vehicle.thrusters import t200, t500
+from buoyancy_mj.vehicle.thrusters.curves import (
     CONTROLS,
     NEUTRAL_PULSE,
     NO_PULSE,
@@ -20,7 +20,7 @@ from buoyancy_mj.vehicle.thruster_curves import (
     open_water_curves,
     tabulate,
 )
-from buoyancy_mj.vehicle.wageningen import wageningen
+from buoyancy_mj.vehicle.thrusters.wageningen import wageningen
 
 PRESETS = {
     "t200": ("voltage", "advance"),

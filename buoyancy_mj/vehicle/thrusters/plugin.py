@@ -15,9 +15,9 @@ from buoyancy_mj.kernels.entries import thrusters as entries
 from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.propulsors import Propulsor
 from buoyancy_mj.kernels.vehicle.thrusters import READINGS
-from buoyancy_mj.vehicle.thruster import Thruster
-from buoyancy_mj.vehicle.thruster_curves import DENSITY
-from buoyancy_mj.vehicle.thruster_texts import KEYS, parse_thruster
+from buoyancy_mj.vehicle.thrusters.curves import DENSITY
+from buoyancy_mj.vehicle.thrusters.texts import KEYS, parse_thruster
+from buoyancy_mj.vehicle.thrusters.thruster import Thruster
 
 PLUGIN = "buoyancy_mj.thruster"
 """Name of the engine plugin."""

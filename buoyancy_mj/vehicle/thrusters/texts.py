@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from buoyancy_mj.errors import ModelError, SceneError
 from buoyancy_mj.settings.tables import build
 from buoyancy_mj.settings.texts import format_value, parse_value
-from buoyancy_mj.vehicle.thruster import Thruster
+from buoyancy_mj.vehicle.thrusters.thruster import Thruster
 
 KEYS = tuple(field.name for field in dataclasses.fields(Thruster))
 """Keys of the plugin: the fields of `Thruster`."""
