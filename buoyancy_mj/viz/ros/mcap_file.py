@@ -1,5 +1,6 @@
 """`McapFile`: an MCAP file that grows under another name, and tells what kept it from growing."""
 
+import os
 import warnings
 from pathlib import Path
 from typing import Any
