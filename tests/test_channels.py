@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from buoyancy_mj import Tank, add_ballast
-from buoyancy_mj.vehicle import channels
+from buoyancy_mj.vehicle.instruments import channels
 from buoyancy_mj.vehicle.instruments.channels import describe_sensor
 from buoyancy_mj.vehicle.instruments.engine_sensors import Component
 from buoyancy_mj.vehicle.instruments.instruments import Instruments
