@@ -1,7 +1,5 @@
 """`Recording`: a run as Rerun data, in a file, in a live viewer, or in both."""
 
-import os
-import sys
 import uuid
 import warnings
 from collections.abc import Iterator
@@ -11,7 +9,7 @@ from typing import Any
 import numpy as np
 import rerun as rr
 
-from buoyancy_mj.errors import BuoyancyWarning, RecordingError
+from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
@@ -23,6 +21,7 @@ from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
 from buoyancy_mj.viz.forces import draw_centres, draw_forces
 from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
+from buoyancy_mj.viz.live_viewer import open_viewer
 from buoyancy_mj.viz.rrd import RrdFile
 from buoyancy_mj.viz.tendons import TendonDrawing
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
@@ -73,7 +72,7 @@ class Recording:
         try:
             if live:
                 self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
-                _open_viewer(self._streams[-1])
+                open_viewer(self._streams[-1])
             self._begin()
         except BaseException:
             # nothing of a recording that never began
@@ -236,23 +235,6 @@ class Recording:
         """Write what has been logged to the file."""
         if self._file is not None:
             self._file.write()
-
-
-def _open_viewer(stream: rr.RecordingStream) -> None:
-    """Stream to a viewer; that of this environment is used even if it is not activated."""
-    path = os.environ.get("PATH", "")
-    os.environ["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), path])
-    try:
-        stream.spawn()
-        # a viewer that cannot open its window is gone by now
-        stream.flush(timeout_sec=10.0)
-    except Exception as error:
-        first, *_ = str(error).strip().splitlines()
-        raise RecordingError(
-            f"no Rerun viewer could be started: {first}; record to a file instead (--record)"
-        ) from error
-    finally:
-        os.environ["PATH"] = path
 
 
 def _summary_text(summary: Summary) -> str:
