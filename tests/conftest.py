@@ -43,3 +43,11 @@ def no_callback_is_left_behind():
     for _, put in CALLBACKS.values():
         put(None)
     assert not left
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """What takes long is slow too."""
+    for item in items:
+        if item.get_closest_marker("long"):
+            item.add_marker("slow")

@@ -109,6 +109,7 @@ def test_kinetic_energy_counts_the_added_mass_either_way():
     assert energies[1] > data.energy[1] + 10.0
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(catalog.scenes()))
 def test_shipped_scenes_do_too(name):

@@ -11,6 +11,7 @@ ROOT = Path(__file__).parent.parent
 NAMES = ("submersion", "tree", "vehicle", "sea", "statics")
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_benchmarks_measure_and_print(tmp_path):
     # one process for all, since the packages beside which they measure are slow to import

@@ -105,6 +105,7 @@ def test_an_undamped_body_keeps_its_energy(bodies, duration):
     assert np.abs(drift(bodies, duration)).max() < 2e-5
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_an_undamped_box_keeps_its_energy_for_ten_minutes():
     # without the change of the wet share it has gained 40 m g 0.2 m by then

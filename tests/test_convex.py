@@ -30,6 +30,7 @@ def turned(seed):
     return trimesh.Trimesh(vertices, solid.faces, process=False), volume
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_convex_hulls_of_a_thousand_turned_solids_are_closed_and_have_their_volume():
     for seed in range(1000):

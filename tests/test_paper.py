@@ -74,6 +74,7 @@ def test_the_catamaran_s_hull_fills_its_tunnel():
 # studies
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_path):
     # one test, since it takes a while: the files, the claims, and the curve of the hourglass
@@ -128,6 +129,7 @@ def test_a_small_version_writes_everything_and_finds_what_the_long_one_does(tmp_
 NUMBER = re.compile(r"[+-]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[+-]?\d+)?")
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["volume", "force", "tilt", "density", "approximations"])
 def test_the_committed_claims_are_what_a_study_measures(name):

@@ -228,7 +228,7 @@ FRAME = st.sampled_from(["earth", "water"])
 WAVE = st.one_of(
     st.builds(
         RegularWave,
-        st.floats(0.0, 0.03),
+        st.floats(0.0, 0.02),
         frequency=st.floats(0.05, 5.0),
         direction=st.floats(-4, 4),
         phase=st.floats(-9, 9),
@@ -264,7 +264,7 @@ METHOD = st.sampled_from(
     waves=st.lists(WAVE, max_size=3),
     density=st.floats(1.0, 2000.0),
     level=st.floats(-10, 10),
-    # so weak that it blocks none of these waves
+    # so weak that it blocks none of these waves, and makes none steeper than waves can be
     current=st.tuples(*[st.floats(-0.03, 0.03)] * 3),
     method=METHOD,
     damping=st.sampled_from([None, Damping(), Damping(viscous=Silhouette(coefficient=0.7))]),
@@ -515,6 +515,7 @@ def test_a_rollout_moves_as_single_simulations():
 # its life -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_five_thousand_data_leave_nothing_behind():
     model = with_water()

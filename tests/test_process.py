@@ -372,7 +372,7 @@ def executed(folder):
 @pytest.mark.parametrize(
     "arguments",
     [
-        pytest.param(["--version"], marks=pytest.mark.slow),
+        pytest.param(["--version"], marks=pytest.mark.long),
         pytest.param(["list"], marks=pytest.mark.slow),
         pytest.param(
             ["run", "hourglass_drop_still", "--duration", "0.05", "--record", "x.rrd"],
@@ -384,11 +384,11 @@ def executed(folder):
         pytest.param(
             ["sweep", "hourglass_drop_still", "--over", "mass=9:10:2", "--duration", "0.05"]
             + ["--out", "x.parquet"],
-            marks=pytest.mark.slow,
+            marks=pytest.mark.long,
         ),
-        pytest.param(["ballast", "hourglass", "--draft", "0.3"], marks=pytest.mark.slow),
+        pytest.param(["ballast", "hourglass", "--draft", "0.3"], marks=pytest.mark.long),
         pytest.param(
-            ["validate", "--only", "small_sphere", "--out", "here"], marks=pytest.mark.slow
+            ["validate", "--only", "small_sphere", "--out", "here"], marks=pytest.mark.long
         ),
     ],
     ids=lambda arguments: arguments[0],
@@ -431,6 +431,7 @@ def test_a_program_of_the_user_keeps_its_working_folder(tmp_path):
 # homes and caches ---------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_without_a_folder_for_compiled_kernels_they_lie_among_temporary_files(tmp_path):
     # files in place of folders, for a superuser may write to whatever is read-only
@@ -566,6 +567,7 @@ def test_partial_files_take_names_that_nobody_has(tmp_path):
     assert (tmp_path / "run.partial-2.rrd").read_text() == "precious"
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_plots_replace_their_own_files_only(here, tmp_path):
     for name in ("report.md", "hourglass_curves.png"):

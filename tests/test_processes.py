@@ -139,6 +139,7 @@ def with_water():
     return spec.compile()
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_children_that_are_forked_while_threads_work_in_water_are_well(tmp_path):

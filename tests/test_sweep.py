@@ -158,6 +158,7 @@ def test_what_is_there_is_not_run_again(name, tmp_path, monkeypatch):
         assert table["peak_draft"].to_pylist() == [float(row["peak_draft"]) for row in whole]
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_a_sweep_that_is_killed_goes_on(tmp_path):
     out = tmp_path / "out.csv"

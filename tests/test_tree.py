@@ -182,6 +182,7 @@ def test_in_waves_it_stays_within_its_tolerance_of_the_sum_over_a_fine_mesh(name
         )
 
 
+@pytest.mark.long
 @pytest.mark.filterwarnings("ignore:the waves are so steep")
 @given(
     st.integers(0, 10**6),

@@ -18,8 +18,11 @@ from buoyancy_mj.validation.case import Case, Row
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "validation.md"
-SLOW = ("sphere_response", "long_waves", "stokes_drift", "added_mass_table")
+SLOW = ("long_waves", "stokes_drift")
 """Cases that run for seconds."""
+LONG = ("sphere_response", "added_mass_table")
+"""Cases that run longer."""
+MARKS = dict.fromkeys(SLOW, pytest.mark.slow) | dict.fromkeys(LONG, pytest.mark.long)
 
 
 def read_sections():
@@ -39,10 +42,7 @@ def read_rows(section):
 
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(name, marks=pytest.mark.slow if name in SLOW else (), id=name)
-        for name in report.CASES
-    ],
+    [pytest.param(name, marks=MARKS.get(name, ()), id=name) for name in report.CASES],
 )
 def test_the_page_shows_what_a_case_computes(name, monkeypatch):
     # what acts in its runs, unless another test has run it before
