@@ -309,6 +309,7 @@ def test_a_simulation_is_the_same_with_and_without_its_frames():
     assert np.array_equal(*ends)
 
 
+@pytest.mark.long
 def test_in_a_long_sea_the_auv_rides_the_surface():
     frames = list(Simulation(read_scene(catalog.scenes()["auv_sea_state_2"])).frames())
     late = np.array(

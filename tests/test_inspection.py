@@ -160,6 +160,7 @@ def test_mass_that_nobody_stated_is_told():
     )
 
 
+@pytest.mark.long
 def test_a_slip_of_units_is_told():
     found = only(mesh_model(1000.0 * BALL.vertices, BALL.faces))
     assert any(

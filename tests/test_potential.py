@@ -226,6 +226,7 @@ def radiate(mesh):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sides", [(24, 12), (48, 8)])
+@pytest.mark.long
 def test_ducts_have_the_added_mass_that_capytaine_computes(sides):
     ring = trimesh.creation.torus(1.0, 0.3, major_sections=sides[0], minor_sections=sides[1])
     mesh = as_mesh(ring)

@@ -137,6 +137,7 @@ def test_a_whole_recording_is_replaced_by_a_whole_one(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.long
 def test_a_process_that_is_killed_leaves_a_file_that_opens(tmp_path):
     command = [
         sys.executable,

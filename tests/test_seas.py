@@ -298,6 +298,7 @@ def test_the_polynomials_around_a_hull_keep_their_bound(radius, z, depth):
 
 
 @pytest.mark.parametrize("components", [4, 5, 64, 200])
+@pytest.mark.long
 def test_a_hull_in_a_sea_displaces_what_the_sum_over_small_triangles_says(components):
     water = Water(waves=JonswapSea(0.6, 4.0, spreading=8.0, components=components))
     mesh, turn = vessels.dented(3), naive.roll(0.4)
