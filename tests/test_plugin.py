@@ -592,7 +592,8 @@ many.step()
 mujoco.mj_step(model, data[0])
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
+    told = [line for line in done.stderr.splitlines() if "compiling what is used" not in line]
+    assert (done.returncode, told) == (0, [])
 
 
 def test_a_failed_compilation_leaves_the_next_one_unharmed():
