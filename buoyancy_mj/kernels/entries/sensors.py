@@ -7,6 +7,7 @@ import functools
 from collections.abc import Callable
 
 from numba import int64
+from numba.extending import register_jitable
 
 from buoyancy_mj.kernels.entries.rays import cast_rays
 from buoyancy_mj.kernels.entries.views import view, view_engine
@@ -22,9 +23,22 @@ from buoyancy_mj.kernels.vehicle.sensors.sampling import (
 )
 
 
+@register_jitable
+def _sound(model, data, known, equipment):
+    """Cast the beams of a sensor."""
+    cast_rays(model, data, known.mount, known.echoes, equipment)
+
+
+@register_jitable
+def _keep_still(model, data, known, equipment):
+    """Do nothing: the sensor has no beams."""
+
+
 @functools.cache
-def make_entry(kind: type, measure: Callable[..., None]) -> Callable[..., int]:
-    """What reads sensors of a NamedTuple class, from what measures them."""
+def make_entry(
+    kind: type, measure: Callable[..., None], sound: Callable[..., None] = _keep_still
+) -> Callable[..., int]:
+    """What reads sensors of a NamedTuple class, from what measures them and what sounds before."""
 
     def entry(model: int64, data: int64, sensor: int64) -> int64:
         known = view(sensor, kind)
@@ -34,6 +48,7 @@ def make_entry(kind: type, measure: Callable[..., None]) -> Callable[..., int]:
         if mount.rate > 0.0 and is_held(mount, equipment, sample):
             hold_sample(mount, equipment)
         else:
+            sound(model, data, known, equipment)
             measure(known, equipment, view(known.device.sea, Sea))
             take_sample(mount, equipment, sample)
         return 0
@@ -41,24 +56,9 @@ def make_entry(kind: type, measure: Callable[..., None]) -> Callable[..., int]:
     return entry
 
 
-@functools.cache
 def make_echo_entry(kind: type, measure: Callable[..., None]) -> Callable[..., int]:
     """The same for sensors with beams."""
-
-    def entry(model: int64, data: int64, sensor: int64) -> int64:
-        known = view(sensor, kind)
-        equipment = view_engine(model, data, known.device.offsets, SensorEquipment)
-        mount = known.mount
-        sample = find_sample(mount, equipment)
-        if mount.rate > 0.0 and is_held(mount, equipment, sample):
-            hold_sample(mount, equipment)
-        else:
-            cast_rays(model, data, mount, known.echoes, equipment)
-            measure(known, equipment, view(known.device.sea, Sea))
-            take_sample(mount, equipment, sample)
-        return 0
-
-    return entry
+    return make_entry(kind, measure, _sound)
 
 
 def read_hydrophone(model: int64, data: int64, sensor: int64) -> int64:
