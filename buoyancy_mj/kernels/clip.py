@@ -34,11 +34,9 @@ from buoyancy_mj.kernels.hulls import (
     WHOLE_MIDDLE,
     WHOLE_VOLUME,
 )
-from buoyancy_mj.kernels.polynomials import with_gradient
-from buoyancy_mj.kernels.series import bend
+from buoyancy_mj.kernels.tiles import swing
 from buoyancy_mj.kernels.triangles import cut, moments
 from buoyancy_mj.kernels.vectors import difference, place, rotate, triple
-from buoyancy_mj.kernels.waves import swing
 
 VOLUME, CX, CY, CZ, WETTED_AREA, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y, COLUMNS = range(9)
 """Columns of one row of results, and how many: volume, its centroid (3), areas, and the centroid of
@@ -52,7 +50,6 @@ def submerge_hulls(
     hulls,  # `hulls.Hulls`
     geoms,  # `multibody.Geoms`
     level,  # of the water [m]
-    waves,  # (w, 7)
     time,  # [s]
     scratch,  # `scratch.CutScratch`
     out,  # (h, 8) volume, centroid (world; NaN when dry), wetted area, waterplane (NaN when none)
@@ -62,6 +59,8 @@ def submerge_hulls(
     Only hulls that the surface may cut cost more than a few operations.
     """
     wholes, frames = hulls.whole, hulls.frames
+    layout, sea = hulls.tiles.layout, hulls.tiles.waves
+    found, phases = scratch.store.found, scratch.store.phases
     positions, rotations = geoms.geom_xpos, geoms.geom_xmat
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
@@ -72,7 +71,7 @@ def submerge_hulls(
         e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
         x, y, z = place(origin, r, c0, c1, c2)
         radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-        eta, spread, curvature = swing(waves, x, y, time, radius)
+        eta, spread, curvature = swing(layout, sea, found, phases, x, y, time, radius)
         depth = level + eta - z
         spread += abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2
 
@@ -84,7 +83,7 @@ def submerge_hulls(
         elif depth <= -spread:
             _set_dry(out, h)
         else:
-            wet = _walk(hulls, h, origin, r, level, waves, time, curvature, scratch)
+            wet = _walk(hulls, h, origin, r, level, time, curvature, scratch)
             _set_wet(out, h, wholes, origin, r, wet)
 
 
@@ -127,7 +126,7 @@ def _set_wet(out, h, wholes, origin, r, wet):
 
 @njit(cache=True, error_model="numpy")
 def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
-    hulls, h, origin, r, level, waves, time, curvature, scratch
+    hulls, h, origin, r, level, time, curvature, scratch
 ):
     """Volume of a hull, its first moments, wetted area, waterplane and its moments, by its tree.
 
@@ -136,11 +135,12 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their
     moments. `curvature` is a bound of the surface's over the hull.
     """
-    near, flat, ray = scratch.swell, scratch.flat, scratch.ray
-    depths, room = scratch.depths[0], scratch.depths[1:]
+    layout, sea = hulls.tiles.layout, hulls.tiles.waves
+    found, phases, near = scratch.store.found, scratch.store.phases, scratch.swell
+    depths = scratch.depths[0]
     vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
     spans, boxes, node_moments = hulls.spans, hulls.boxes, hulls.moments
-    plane, rest = swell.approach(level, waves, origin, r, hulls.whole, h, time, near, flat)
+    plane, rest = swell.approach(level, layout, sea, found, phases, origin, r, hulls.whole, h, time, near)
     wavy = rest.near > 0 or rest.smooth
 
     # seven integrals over the wet side, four of e over the waterplane, and its moments
@@ -153,24 +153,9 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
         under = swell.depth_away(plane, away)
         depth, slope = under, plane.gradient
         if wavy:
-            # with the rest of the elevation over the middle of the node
-            if rest.smooth:
-                x, y, _ = rotate(r, away[0], away[1], away[2])
-                e, sx, sy = with_gradient(flat, 0, rest.degree, x, y)
-                depth += e
-                slope = (
-                    slope[0] + sx * r[0] + sy * r[3],
-                    slope[1] + sx * r[1] + sy * r[4],
-                    slope[2] + sx * r[2] + sy * r[5],
-                )
-            for w in range(rest.near):
-                crest, steep = near[w, swell.CREST], near[w, swell.SLOPE]
-                k0, k1, k2 = triple(near, w, swell.K)
-                angle = k0 * away[0] + k1 * away[1] + k2 * away[2]
-                sine, cosine = bend(angle, rest.doubled)
-                depth += crest * cosine - steep * sine
-                change = -steep * cosine - crest * (sine + angle)
-                slope = slope[0] + change * k0, slope[1] + change * k1, slope[2] + change * k2
+            e, bent = swell.over_node(rest, r, layout, sea, found, phases, near, away)
+            depth += e
+            slope = slope[0] + bent[0], slope[1] + bent[1], slope[2] + bent[2]
         spread = tree.spread_in_box(half, slope, curvature)
         dry, wet = depth <= -spread, depth >= spread
         if wet and not dry:
@@ -181,7 +166,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             swell.set_depths(vertices, first, last, plane, depths)
             if wavy:
                 swell.add_rest(
-                    vertices, first, last, plane.middle, r, rest, near, flat, depths, room
+                    vertices, first, last, plane.middle, r, rest, layout, sea, found, phases, near, depths
                 )
             for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
                 j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
@@ -202,7 +187,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                     ax, ay = ax + sixth * (px + qx), ay + sixth * (py + qy)
                     if wavy:
                         more = swell.waterplane_moments(
-                            ends, plane.height, plane.slope, rest, near, flat, ray
+                            ends, plane.height, plane.slope, rest, layout, sea, found, phases, near
                         )
                         extra = _sum_four(extra, more)
                 total = _sum(total, (*part, fraction * a, fraction * areas[f, AREA_OF_FACE]))

@@ -1,117 +1,37 @@
-"""Pressure over a node of the tree, by a quadratic about its middle and the moments of its area.
-
-The quadratic is known by its values at 13 places in the node, which several nodes gather, so that
-the processor works on several at once.
-"""
-
-import math
+"""Pressure over a node of the tree, by a quadratic about its middle and the moments of its area."""
 
 from numba import njit
 
-from buoyancy_mj.kernels import local, tree
-from buoyancy_mj.kernels.local import HEAD, heads
-from buoyancy_mj.kernels.quadrature import PLACES
-from buoyancy_mj.kernels.vectors import place, triple
-
-_STENCIL = (
-    (0.0, 0.0, 0.0),
-    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0),
-    (0.0, 1.0, 0.0), (0.0, -1.0, 0.0),
-    (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
-    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0),
-    (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0),
-    (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
-)  # fmt: skip
-"""Places in a node at which a quadratic is known by its values."""
-NODES = PLACES // len(_STENCIL)
-"""Nodes that may wait."""
+from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.vectors import rotate_back
 
 
 @njit(cache=True, error_model="numpy")
-def add_node(asked, nodes, count, near, setting, sums, moments, boxes, node, origin, r, level):
-    """Let a wet node wait.
-
-    Where there are more than the room holds, those that wait are summed.
+def add_node(moments, node, middle, r, quadratic, sums):
+    """Add force and torque of the head over a node.
 
     Args:
-        asked: a room of `local` for `PLACES`.
-        nodes: the nodes that wait (NODES,).
-        count: how many wait.
-        near: the waves around the hull, see `local.gather`.
-        setting: a `quadrature.Setting`.
+        moments: of all nodes.
+        node: the node.
+        middle: of its box, in the frame of the hull.
+        r: world_from_frame.
+        quadratic: the head about its middle in the world's axes, see `blocks.quadratic_in`.
         sums: force over rho g [m^3], and torque about the origin over rho g [m^4] (6,), in the
             hull's frame; written.
-        moments: of all nodes.
-        boxes: of all nodes.
-        node: the node.
-        origin: of the hull's frame in the world.
-        r: world_from_frame.
-        level: the still level [m].
-
-    Returns:
-        How many wait then.
     """
-    if count == NODES:
-        count = sum_nodes(asked, nodes, count, near, setting, sums, moments, boxes)
-    first = count * len(_STENCIL)
-    b0, b1, b2 = triple(boxes, node, tree.MIDDLE)
-    e0, e1, e2 = triple(boxes, node, tree.HALF)
-    s = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2) / math.sqrt(3.0)
-    for n in range(len(_STENCIL)):
-        i, j, k = _STENCIL[n]
-        x, y, z = place(origin, r, b0 + s * i, b1 + s * j, b2 + s * k)
-        asked[0, first + n], asked[1, first + n] = x - near[local.X], y - near[local.Y]
-        asked[2, first + n] = z - level
-    nodes[count] = node
-    return count + 1
-
-
-@njit(cache=True, error_model="numpy")
-def sum_nodes(asked, nodes, count, near, setting, sums, moments, boxes):
-    """Add force and torque of all nodes that wait; returns that none do any more."""
-    size = len(_STENCIL)
-    heads(near, asked, count * size, setting.time, setting.dynamic)
-    for n in range(count):
-        _add(moments[nodes[n]], boxes[nodes[n]], asked[HEAD], n * size, sums)
-    return 0
-
-
-@njit(cache=True, error_model="numpy")
-def _add(m, box, head, first, sums):
-    """Add force and torque of the head over a node, about the origin.
-
-    Its moments m are about the middle of its box.
-
-    The heads at its places stand in a row from `first`.
-    """
-    b0, b1, b2 = box[tree.MIDDLE], box[tree.MIDDLE + 1], box[tree.MIDDLE + 2]
-    e0, e1, e2 = box[tree.HALF], box[tree.HALF + 1], box[tree.HALF + 2]
-    s = math.sqrt((e0 * e0 + e1 * e1 + e2 * e2) / 3.0)
-    p = head[first]
-    px, nx, py, ny = head[first + 1], head[first + 2], head[first + 3], head[first + 4]
-    pz, nz = head[first + 5], head[first + 6]
-    xy, xz = head[first + 7] + head[first + 8], head[first + 9] + head[first + 10]
-    yz = head[first + 11] + head[first + 12]
-
-    # its gradient, and half its second derivatives, those across once for both
-    step, square = 0.5 / s, 0.5 / (s * s)
-    g = step * (px - nx), step * (py - ny), step * (pz - nz)
-    second = (
-        square * (px + nx - 2.0 * p),
-        square * (py + ny - 2.0 * p),
-        square * (pz + nz - 2.0 * p),
-        square * (xy - px - nx - py - ny + 2.0 * p),
-        square * (xz - px - nx - pz - nz + 2.0 * p),
-        square * (yz - py - ny - pz - nz + 2.0 * p),
-    )
-    f0 = _force(m, 0, p, g, second)
-    f1 = _force(m, 1, p, g, second)
-    f2 = _force(m, 2, p, g, second)
+    p, slope, second = quadratic
+    g = rotate_back(r, slope[0], slope[1], slope[2])
+    h = _turn_back(r, second)
+    f0 = _force(moments, node, 0, p, g, h)
+    f1 = _force(moments, node, 1, p, g, h)
+    f2 = _force(moments, node, 2, p, g, h)
 
     # the torque about the middle, to first order
-    t0 = _lever(m, 1, 2, p, g) - _lever(m, 2, 1, p, g)
-    t1 = _lever(m, 2, 0, p, g) - _lever(m, 0, 2, p, g)
-    t2 = _lever(m, 0, 1, p, g) - _lever(m, 1, 0, p, g)
+    m, n = moments, node
+    t0 = _lever(m, n, 1, 2, p, g) - _lever(m, n, 2, 1, p, g)
+    t1 = _lever(m, n, 2, 0, p, g) - _lever(m, n, 0, 2, p, g)
+    t2 = _lever(m, n, 0, 1, p, g) - _lever(m, n, 1, 0, p, g)
+    b0, b1, b2 = middle
     sums[0] += f0
     sums[1] += f1
     sums[2] += f2
@@ -121,22 +41,51 @@ def _add(m, box, head, first, sums):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _force(m, c, p, g, h):
-    """Component c of the integral of a quadratic head over the area.
+def _turn_back(r, second):
+    """Coefficients of x^2, y^2, z^2, x y, x z and y z of the world, in the axes of a frame."""
+    xx, yy, zz, xy, xz, yz = second
+    xy, xz, yz = 0.5 * xy, 0.5 * xz, 0.5 * yz
+    # the symmetric matrix times each column of the rotation
+    a0, a1, a2 = _times(xx, yy, zz, xy, xz, yz, r[0], r[3], r[6])
+    b0, b1, b2 = _times(xx, yy, zz, xy, xz, yz, r[1], r[4], r[7])
+    c0, c1, c2 = _times(xx, yy, zz, xy, xz, yz, r[2], r[5], r[8])
+    return (
+        r[0] * a0 + r[3] * a1 + r[6] * a2,
+        r[1] * b0 + r[4] * b1 + r[7] * b2,
+        r[2] * c0 + r[5] * c1 + r[8] * c2,
+        2.0 * (r[0] * b0 + r[3] * b1 + r[6] * b2),
+        2.0 * (r[0] * c0 + r[3] * c1 + r[6] * c2),
+        2.0 * (r[1] * c0 + r[4] * c1 + r[7] * c2),
+    )
 
-    The head has a value p, a gradient g and second derivatives h.
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _times(xx, yy, zz, xy, xz, yz, x, y, z):
+    """A symmetric matrix times a vector."""
+    return xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _force(m, n, c, p, g, h):
+    """Component c of the integral of a quadratic head over the area of a node.
+
+    The head has a value p, a gradient g and coefficients h of the squares and products.
     """
     return (
-        p * m[tree.VECTOR + c] + g[0] * m[tree.X + c] + g[1] * m[tree.Y + c] + g[2] * m[tree.Z + c]
-        + h[0] * m[tree.XX + c] + h[1] * m[tree.YY + c] + h[2] * m[tree.ZZ + c]
-        + h[3] * m[tree.XY + c] + h[4] * m[tree.XZ + c] + h[5] * m[tree.YZ + c]
+        p * m[n, tree.VECTOR + c]
+        + g[0] * m[n, tree.X + c] + g[1] * m[n, tree.Y + c] + g[2] * m[n, tree.Z + c]
+        + h[0] * m[n, tree.XX + c] + h[1] * m[n, tree.YY + c] + h[2] * m[n, tree.ZZ + c]
+        + h[3] * m[n, tree.XY + c] + h[4] * m[n, tree.XZ + c] + h[5] * m[n, tree.YZ + c]
     )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _lever(m, i, c, p, g):
+def _lever(m, n, i, c, p, g):
     """Integral of a linear head times coordinate i over component c of the area."""
     x = tree.XX if i == 0 else tree.XY if i == 1 else tree.XZ
     y = tree.XY if i == 0 else tree.YY if i == 1 else tree.YZ
     z = tree.XZ if i == 0 else tree.YZ if i == 1 else tree.ZZ
-    return p * m[tree.X + 3 * i + c] + g[0] * m[x + c] + g[1] * m[y + c] + g[2] * m[z + c]
+    return (
+        p * m[n, tree.X + 3 * i + c]
+        + g[0] * m[n, x + c] + g[1] * m[n, y + c] + g[2] * m[n, z + c]
+    )  # fmt: skip

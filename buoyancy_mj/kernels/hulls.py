@@ -3,12 +3,14 @@
 from typing import Annotated, NamedTuple
 
 from buoyancy_mj.kernels.arrays import Corners, Doubles, Words
+from buoyancy_mj.kernels.blocks import Blocks
+from buoyancy_mj.kernels.tiles import Tiles
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
-FILL, DEGREE, LIMIT, BOTTOM_DEGREE = 11, 12, 13, 14
-"""Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its
-faces, middle (3) and half sides (3) of its bounding box, the part of its volume that displaces
-water, and its `planning.plan` (3)."""
+FILL, COLUMNS = 11, 12
+"""Columns of `Hulls.whole`, and how many: volume that the whole hull displaces, its centroid (3), the
+area of its faces, middle (3) and half sides (3) of its bounding box, and the part of its volume that
+displaces water."""
 AREA_OF_FACE = 3
 """Column of `Hulls.areas` behind the vector area (3)."""
 
@@ -30,9 +32,13 @@ class Hulls(NamedTuple):
     """Bounding box of each node: middle and half sides [m]."""
     moments: Annotated[Doubles, ("n", 31)]
     """Moments of the vector area under each node, times the part that displaces; and the area."""
-    whole: Annotated[Doubles, ("h", 15)]
-    """Each hull as a whole, in columns `WHOLE_VOLUME` to `BOTTOM_DEGREE`."""
+    whole: Annotated[Doubles, ("h", COLUMNS)]
+    """Each hull as a whole, in columns `WHOLE_VOLUME` to `FILL`."""
     typical: Annotated[Doubles, ("d",)]
     """Typical wave numbers of the sea by depth, see `pressure.typical` [rad/m]."""
+    tiles: Tiles
+    """The surface around them."""
+    blocks: Blocks
+    """The pressure around them."""
     frames: Annotated[Words, ("h",)]
     """Index of the frame of each hull among the geoms."""

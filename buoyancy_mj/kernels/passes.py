@@ -143,7 +143,7 @@ def add_wave_pressure(arrays):
     """What the pressure under waves adds to it."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
     pressure.press_hulls(
-        loads.hulls, engine.geoms, loads.sea, engine.time, arrays.scratch.pressure, record.heads
+        loads.hulls, engine.geoms, loads.sea, engine.time, arrays.scratch, record.heads
     )
     wrenches.add_wave_pressure(
         record.heads,

@@ -2,7 +2,7 @@
 
 By a tree of moments: a wet node that is small beside the waves is answered by its moments, with the
 pressure as a quadratic about its middle, see `expansions`; elsewhere triangles are cut at the
-surface and summed at points, see `quadrature`.
+surface and summed at points, see `quadrature`. The pressure itself comes from the blocks of `blocks`.
 """
 
 import math
@@ -11,20 +11,15 @@ import numpy as np
 from numba import int64, njit
 from numpy.typing import NDArray
 
-from buoyancy_mj.kernels import local, tree
-from buoyancy_mj.kernels.expansions import add_node, sum_nodes
-from buoyancy_mj.kernels.hulls import (
-    BOTTOM_DEGREE,
-    DEGREE,
-    LIMIT,
-    WHOLE_HALF,
-    WHOLE_MIDDLE,
-)
-from buoyancy_mj.kernels.local import HEAD, elevations, gather, surface
-from buoyancy_mj.kernels.quadrature import Setting, add_wet_part, sum_points
+from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.blocks import fill, find_block, is_known, quadratic_in
+from buoyancy_mj.kernels.expansions import add_node
+from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
+from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, Setting, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
+from buoyancy_mj.kernels.tiles import swing, tangent_at
 from buoyancy_mj.kernels.vectors import place, rotate, triple
-from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY, swing
+from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 
 SMALL = 0.3
 """Half the diagonal of a node, times the typical wave number, for moments: to SMALL^3 / 6."""
@@ -55,7 +50,7 @@ def press_hulls(
     geoms,  # `multibody.Geoms`
     sea,  # `sea.Sea`
     time,  # [s]
-    scratch,  # `scratch.PressureScratch`
+    scratch,  # `scratch.Scratch`
     out,  # (h, 6)
 ):
     """Write the pressure of the water, integrated over the wet side of each hull, to `out`.
@@ -63,63 +58,33 @@ def press_hulls(
     That is a force over rho g [m^3], and a torque about the origin of the hull's frame over rho g
     [m^4], in the world's axes.
     """
-    wholes, frames, typical = hulls.whole, hulls.frames, hulls.typical
-    vertices, faces, areas, nodes = hulls.vertices, hulls.faces, hulls.areas, hulls.nodes
-    spans, boxes, moments = hulls.spans, hulls.boxes, hulls.moments
-    positions, rotations, level, waves = geoms.geom_xpos, geoms.geom_xmat, sea.level, sea.waves
-    near, points, corners = scratch.near, scratch.points, scratch.corners
-    asked, waiting, depths = scratch.asked, scratch.nodes, scratch.depths
+    wholes, frames = hulls.whole, hulls.frames
+    positions, rotations, level = geoms.geom_xpos, geoms.geom_xmat, sea.level
+    layout, waves, store = hulls.tiles.layout, hulls.tiles.waves, scratch.cut.store
+    found, phases = store.found, store.phases
     # triangles in the world, nodes in the frame; both about its origin
-    sums, turned = scratch.sums, scratch.turned
+    sums, turned = scratch.pressure.sums, scratch.pressure.turned
     dynamic = sea.pressure == PressureModel.froude_krylov
     for h in range(frames.shape[0]):
         origin, r = positions[frames[h]], rotations[frames[h]]
         out[h, :] = 0.0
-        dry, curvature = _gather(level, waves, wholes, h, origin, r, time, dynamic, near)
-        if dry:
+
+        # a hull that is dry, or lost
+        c0, c1, c2 = triple(wholes, h, WHOLE_MIDDLE)
+        e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
+        x, y, z = place(origin, r, c0, c1, c2)
+        radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
+        eta, spread, curvature = swing(layout, waves, found, phases, x, y, time, radius)
+        depth = level + eta - z
+        if not math.isfinite(depth) or depth <= -radius - spread:
+            out[h, :] = 0.0 if depth < math.inf else math.nan
             continue
+
         setting = Setting((origin[0], origin[1], origin[2] - level), time, dynamic)
         sums[:], turned[:] = 0.0, 0.0
-        # int64: a literal 0 would have all that it is given to compiled twice
-        count = many = int64(0)
-        i, end = nodes[h], nodes[h + 1]
-        while i < end:
-            b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
-            e0, e1, e2 = triple(boxes, i, tree.HALF)
-            size = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-
-            # the depth of the middle of the box, and how much less or more any point of it has
-            x, y, z = place(origin, r, b0, b1, b2)
-            eta, along, across = surface(near, x, y, time)
-            depth = level + eta - z
-            h0 = along * r[0] + across * r[3] - r[6]
-            h1 = along * r[1] + across * r[4] - r[7]
-            h2 = along * r[2] + across * r[5] - r[8]
-            spread = tree.spread_in_box((e0, e1, e2), (h0, h1, h2), curvature)
-            dry, wet = depth <= -spread, depth >= spread
-
-            # a small wet node, or the triangles of a leaf; the choice is the same in crests and
-            # troughs, where its error would have a mean
-            most = typical[0]
-            if wet and dynamic:
-                rise = abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2
-                top = max(level - z - rise, 0.0)
-                most = typical[int(min(top * most, DEPTHS - 1.0))]
-            small = wet and not dry and most * size <= SMALL and size > 0.0
-            if small:
-                many = add_node(
-                    asked, waiting, many, near, setting, turned, moments, boxes, i, origin, r, level
-                )
-            elif not dry and tree.is_leaf(spans, i):
-                count = _add_leaf(
-                    vertices, faces, areas, spans, i, r, near, setting, wet, corners, depths,
-                    points, count, sums, most,
-                )  # fmt: skip
-            i = tree.node_after(spans, i, dry or small)
+        _walk(hulls, h, setting, r, curvature, scratch)
 
         # the sum, outward
-        sum_points(points, count, near, setting, sums)
-        sum_nodes(asked, waiting, many, near, setting, turned, moments, boxes)
         fx, fy, fz = rotate(r, turned[0], turned[1], turned[2])
         tx, ty, tz = rotate(r, turned[3], turned[4], turned[5])
         out[h, 0], out[h, 1], out[h, 2] = -(sums[0] + fx), -(sums[1] + fy), -(sums[2] + fz)
@@ -127,56 +92,77 @@ def press_hulls(
 
 
 @njit(cache=True, error_model="numpy")
-def _gather(level, waves, wholes, h, origin, r, time, dynamic, near):
-    """Bring the waves to a hull that is not dry.
+def _walk(hulls, h, setting, r, curvature, scratch):
+    """Add nodes and triangles of a hull; `curvature` is a bound of the surface's over it."""
+    typical, spans, boxes, moments = hulls.typical, hulls.spans, hulls.boxes, hulls.moments
+    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
+    layout, waves, blocks = hulls.tiles.layout, hulls.tiles.waves, hulls.blocks
+    found, phases, depths = scratch.cut.store.found, scratch.cut.store.phases, scratch.cut.depths
+    store, points = scratch.pressure.store, scratch.pressure.points
+    sums, turned = scratch.pressure.sums, scratch.pressure.turned
+    known, sizes = store.found, blocks.layout
+    time, dynamic = setting.time, setting.dynamic
+    # int64: a literal 0 would have all that it is given to compiled twice
+    count = int64(0)
+    i, end, wet_until = hulls.nodes[h], hulls.nodes[h + 1], int64(0)
+    while i < end:
+        b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
+        e0, e1, e2 = triple(boxes, i, tree.HALF)
+        size = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
+        x, y, z = place(setting.origin, r, b0, b1, b2)
 
-    Returns whether it is dry, and a bound of the surface's curvature over it.
-    """
-    c0, c1, c2 = triple(wholes, h, WHOLE_MIDDLE)
-    e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
-    x, y, z = place(origin, r, c0, c1, c2)
-    radius = math.sqrt(e0**2 + e1**2 + e2**2)
-    eta, spread, curvature = swing(waves, x, y, time, radius)
-    dry = level + eta - z <= -radius - spread
-    if not dry:
-        degree, limit = int(wholes[h, DEGREE]), wholes[h, LIMIT]
-        bottom = int(wholes[h, BOTTOM_DEGREE])
-        gather(waves, x, y, z - level, eta, time, radius, degree, limit, bottom, dynamic, near)
-    return dry, curvature
+        # the depth of the middle of the box, and how much less or more any point of it has
+        dry, wet = False, i < wet_until
+        if not wet:
+            eta, along, across = tangent_at(layout, waves, found, phases, x, y, time)
+            h0 = along * r[0] + across * r[3] - r[6]
+            h1 = along * r[1] + across * r[4] - r[7]
+            h2 = along * r[2] + across * r[5] - r[8]
+            spread = tree.spread_in_box((e0, e1, e2), (h0, h1, h2), curvature)
+            dry, wet = eta - z <= -spread, eta - z >= spread
+            if wet:
+                wet_until = tree.node_after(spans, i, True)
 
+        # a small wet node, or the triangles of a leaf; the choice is the same in crests and
+        # troughs, where its error would have a mean
+        most = typical[0]
+        if wet and dynamic:
+            rise = abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2
+            top = max(-z - rise, 0.0)
+            most = typical[int(min(top * most, DEPTHS - 1.0))]
+        small = wet and not dry and most * size <= SMALL and size > 0.0
+        if small:
+            b, mx, my, mz = find_block(sizes, known, x, y, z)
+            if not is_known(known, b, mx, my, mz, time):
+                fill(waves, blocks, store, b, mx, my, mz, time, dynamic)
+            quadratic = quadratic_in(sizes, known, b, x, y, z)
+            add_node(moments, i, (b0, b1, b2), r, quadratic, turned)
+        elif not dry and tree.is_leaf(spans, i):
+            first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
 
-@njit(cache=True, error_model="numpy")
-def _add_leaf(
-    vertices, faces, areas, spans, i, r, near, setting, wet, corners, depths,
-    points, count, sums, most,
-):  # fmt: skip
-    """Add the wet parts of the triangles of a leaf, see `quadrature.add_wet_part`.
+            # depths of the vertices, where some may be dry
+            for n in range(last - first):
+                depths[0, n] = 1.0
+                if not wet:
+                    x, y, z = _corner(vertices, first + n, r, setting)
+                    eta, _, _ = tangent_at(layout, waves, found, phases, x, y, time)
+                    depths[0, n] = eta - z
 
-    Returns how many points wait then.
-    """
-    first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
-
-    # depths of the vertices, where some may be dry
-    for n in range(0 if wet else last - first):
-        x, y, z = _corner(vertices, first + n, r, setting)
-        corners[0, n], corners[1, n], corners[2, n] = x - near[local.X], y - near[local.Y], z
-    if not wet:
-        elevations(near, corners, last - first, setting.time)
-    for n in range(last - first):
-        depths[n] = 1.0 if wet else corners[HEAD, n] - corners[2, n]
-
-    # what is wet of each triangle
-    for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
-        j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
-        dj, dk, do = depths[j - first], depths[k - first], depths[o - first]
-        if dj <= 0.0 and dk <= 0.0 and do <= 0.0:
-            continue
-        p = _corner(vertices, j, r, setting)
-        q = _corner(vertices, k, r, setting)
-        s = _corner(vertices, o, r, setting)
-        area = rotate(r, areas[f, 0], areas[f, 1], areas[f, 2])
-        count = add_wet_part(points, count, near, setting, sums, p, q, s, dj, dk, do, area, most)
-    return count
+            # what is wet of each triangle
+            for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
+                j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
+                dj, dk, do = depths[0, j - first], depths[0, k - first], depths[0, o - first]
+                if dj <= 0.0 and dk <= 0.0 and do <= 0.0:
+                    continue
+                if count > PLACES - TRIANGLE:
+                    count = sum_points(waves, blocks, store, setting, points, count, sums)
+                p = _corner(vertices, j, r, setting)
+                q = _corner(vertices, k, r, setting)
+                s = _corner(vertices, o, r, setting)
+                area = rotate(r, areas[f, 0], areas[f, 1], areas[f, 2])
+                count = add_wet_part(points, count, p, q, s, dj, dk, do, area, most, sums)
+        i = tree.node_after(spans, i, dry or small)
+    sum_points(waves, blocks, store, setting, points, count, sums)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

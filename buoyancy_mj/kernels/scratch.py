@@ -1,46 +1,37 @@
 """`Scratch`: arrays to work in, for one thread."""
 
 from collections.abc import Mapping
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from buoyancy_mj.kernels import local, swell
-from buoyancy_mj.kernels.arrays import Doubles, Words, leaves
-from buoyancy_mj.kernels.expansions import NODES
-from buoyancy_mj.kernels.planning import MOST
+from buoyancy_mj.kernels import swell
+from buoyancy_mj.kernels.arrays import Doubles, Field, Words, fields
+from buoyancy_mj.kernels.blocks import BlockStore
 from buoyancy_mj.kernels.quadrature import PLACES
+from buoyancy_mj.kernels.tiles import TileStore
+
+T = TypeVar("T")
 
 
 class CutScratch(NamedTuple):
     """For `clip` and `waterplane`."""
 
-    depths: Annotated[Doubles, (5, "v")]
-    """Depths of the vertices of a leaf, and what they are found by."""
+    depths: Annotated[Doubles, (1, "v")]
+    """Depths of the vertices of a leaf."""
     swell: Annotated[Doubles, ("w", swell.COLUMNS)]
     """The near waves of `swell`."""
-    flat: Annotated[Doubles, (local.FLAT,)]
-    """The polynomial of `swell`."""
-    ray: Annotated[Doubles, (MOST + 1,)]
-    """That polynomial along a ray."""
+    store: TileStore
+    """The tiles of the sea that are known."""
 
 
 class PressureScratch(NamedTuple):
     """For `pressure`."""
 
-    depths: Annotated[Doubles, ("v",)]
-    """Depths of the vertices of a leaf."""
-    corners: Annotated[Doubles, (local.ROOM, "v")]
-    """A room of `local` for the vertices of a leaf."""
-    near: Annotated[Doubles, ("n",)]
-    """The waves around a hull, a row of `local`."""
-    points: Annotated[Doubles, (local.ROOM + 3, PLACES)]
+    store: BlockStore
+    """The blocks of the sea that are known."""
+    points: Annotated[Doubles, (6, PLACES)]
     """The points of `quadrature`."""
-    asked: Annotated[Doubles, (local.ROOM, PLACES)]
-    """The places of `expansions`."""
-    nodes: Annotated[Words, (NODES,)]
-    """The nodes of `expansions`."""
     sums: Annotated[Doubles, (6,)]
     """Force and torque on triangles."""
     turned: Annotated[Doubles, (6,)]
@@ -48,7 +39,7 @@ class PressureScratch(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Arrays that kernels write to and that hold nothing from one call to the next."""
+    """Arrays that kernels write to. From one call to the next they hold tiles and blocks alone."""
 
     cut: CutScratch
     pressure: PressureScratch
@@ -59,20 +50,20 @@ def new_scratches(count: int, vertices: int, waves: int) -> list[Scratch]:
 
     Each array of all of them is one block: of a large block, what nobody writes to costs no memory.
     """
-    sizes = {"v": vertices, "w": waves, "n": local.NEAR + local.WAVE * waves}
-    cut, pressure = (_new_blocks(kind, count, sizes) for kind in (CutScratch, PressureScratch))
-    return [
-        Scratch(
-            CutScratch(*(block[i] for block in cut)),
-            PressureScratch(*(block[i] for block in pressure)),
-        )
-        for i in range(count)
-    ]
+    return _new_blocks(Scratch, count, {"v": vertices, "w": waves})
 
 
-def _new_blocks(kind: type, count: int, sizes: Mapping[str, int]) -> list[NDArray[Any]]:
-    """A block for each array of a kind of scratch, `count` times its shape."""
-    return [
-        np.empty((count, *(sizes[n] if isinstance(n, str) else n for n in leaf.shape)), leaf.dtype)
-        for leaf in leaves(kind)
+def _new_blocks(kind: type[T], count: int, sizes: Mapping[str, int]) -> list[T]:
+    """Scratch of a kind, `count` times, whose arrays are parts of one block each."""
+    parts = [
+        _new_blocks(field, count, sizes)
+        if not isinstance(field, Field)
+        else list(np.zeros((count, *_lengths(field, sizes)), field.dtype))
+        for field in fields(kind)
     ]
+    return [kind(*members) for members in zip(*parts, strict=True)]
+
+
+def _lengths(field: Field, sizes: Mapping[str, int]) -> list[int]:
+    """The shape of a field."""
+    return [sizes[n] if isinstance(n, str) else n for n in field.shape]

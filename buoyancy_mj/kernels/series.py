@@ -2,10 +2,22 @@
 
 import math
 
+import numpy as np
 from numba import njit
 
 SHORT = 1.6
 """Angle [rad] for which the series of `bend` hold; twice that, and four times that, by doubling."""
+_PER_QUARTER = 2.0 / math.pi
+_QUARTER_1, _QUARTER_2 = 1.5707963267341256, 6.077100506506192e-11
+"""A quarter of a turn, in two parts, of which the first has few enough digits for exact products
+with whole numbers below 2^20."""
+_PER_DOUBLING = 1.0 / math.log(2.0)
+_DOUBLING_1, _DOUBLING_2 = 0.6931471803691238, 1.9082149292705877e-10
+"""ln 2, in two parts, of which the first has few enough digits for exact products."""
+_TWO_TO = 2.0 ** np.arange(-64.0, 65.0)
+_E3, _E4, _E5, _E6, _E7, _E8, _E9, _E10, _E11, _E12, _E13 = (
+    1.0 / math.factorial(n) for n in range(3, 14)
+)
 # one over factorials, of the odd and of the even terms
 _S3, _S5, _S7, _S9, _S11, _S13, _S15, _S17, _S19, _S21 = (
     (-1) ** n / math.factorial(2 * n + 1) for n in range(1, 11)
@@ -56,3 +68,34 @@ def sine(angle):
     end = _S13 + q * (_S15 + q * (_S17 + q * (_S19 + q * _S21)))
     middle = _S5 + q * (_S7 + q * (_S9 + q * (_S11 + q * end)))
     return angle * (1.0 + q * (_S3 + q * middle))
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def turn(angle):
+    """Cosine and sine of any angle, to 1e-15 and the rounding of the angle itself."""
+    quarters = math.floor(angle * _PER_QUARTER + 0.5)
+    x = (angle - quarters * _QUARTER_1) - quarters * _QUARTER_2
+    q = x * x
+    sine = x + x * q * (_S3 + q * (_S5 + q * (_S7 + q * (_S9 + q * (_S11 + q * (_S13 + q * _S15))))))
+    cosine = 1.0 + q * (
+        _C2 + q * (_C4 + q * (_C6 + q * (_C8 + q * (_C10 + q * (_C12 + q * (_C14 + q * _C16))))))
+    )
+    # which quarter it is, as 0 to 3
+    quarter = quarters - 4.0 * math.floor(0.25 * quarters)
+    odd = quarter == 1.0 or quarter == 3.0
+    first, second = (sine, cosine) if odd else (cosine, sine)
+    return (
+        -first if quarter == 1.0 or quarter == 2.0 else first,
+        -second if quarter >= 2.0 else second,
+    )
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def exponential(x):
+    """e^x, to 1e-15; of less than -40 it is that of -40, which is lost beside 1."""
+    x = min(max(x, -40.0), 40.0)
+    doublings = math.floor(x * _PER_DOUBLING + 0.5)
+    r = (x - doublings * _DOUBLING_1) - doublings * _DOUBLING_2
+    end = _E8 + r * (_E9 + r * (_E10 + r * (_E11 + r * (_E12 + r * _E13))))
+    middle = _E3 + r * (_E4 + r * (_E5 + r * (_E6 + r * (_E7 + r * end))))
+    return (1.0 + r * (1.0 + r * (0.5 + r * middle))) * _TWO_TO[int(doublings) + 64]

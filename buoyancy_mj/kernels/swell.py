@@ -2,8 +2,8 @@
 
 The plane touches the surface over the middle of the hull.
 
-The rest e(x, y) of the elevation is that of the near waves, which are taken one by one, and of a
-polynomial that holds all others, see `local`.
+The rest e(x, y) of the elevation is what the waves have beside that plane: the tiles of `tiles`, and
+the near waves, which are taken one by one.
 """
 
 import math
@@ -11,12 +11,18 @@ from typing import NamedTuple
 
 from numba import njit
 
-from buoyancy_mj.kernels import planning
-from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
-from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
+from buoyancy_mj.kernels import tiles
+from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.series import bend, doublings
+from buoyancy_mj.kernels.tiles import (
+    AMPLITUDE,
+    KX,
+    KY,
+    find_tile,
+    four_elevations,
+    tangent_in,
+)
 from buoyancy_mj.kernels.vectors import place, rotate, triple
-from buoyancy_mj.kernels.waves import AMPLITUDE, phase_at
 
 CREST, SLOPE, K, K_WORLD, COLUMNS = 0, 1, 2, 5, 7
 """Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave
@@ -60,29 +66,35 @@ class Plane(NamedTuple):
 class Rest(NamedTuple):
     """The rest of the elevation around a hull, but for its arrays.
 
-    Those are the near waves, and the coefficients of the polynomial.
+    Those are the near waves, and the tiles.
     """
 
     near: int
     """How many waves are near."""
-    degree: int
-    """Degree of the polynomial."""
     smooth: bool
-    """Whether it holds any wave."""
+    """Whether tiles hold any wave."""
     doubled: int
-    """How often angles between waves and hull are halved, see `series.bend`."""
-    panels: int
-    """Into how many panels the way from the middle to a cut is divided."""
+    """How often angles between near waves and hull are halved, see `series.bend`."""
+    turning: float
+    """Wave number that says how finely a way is divided into panels [rad/m]."""
+    place: tuple[float, float]
+    """Of the middle of the hull along x and y of the world [m]."""
+    touch: tuple[float, float, float]
+    """Elevation of the tiles over the middle, and its gradient along x and y."""
+    time: float
+    """[s]."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def approach(level, waves, origin, r, whole, h, time, swell, flat):
+def approach(level, layout, waves, found, phases, origin, r, whole, h, time, near):
     """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane` and a `Rest`.
 
-    The arrays of the rest are `swell` and `flat`.
+    Layout and waves are of `tiles.Tiles`, what was found of a `tiles.TileStore`; the near waves go
+    to `near`.
     """
     c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
-    eta, s0, s1, s2, near, change = _gather(waves, origin, r, whole, h, time, swell, flat)
+    x, y, _ = place(origin, r, c0, c1, c2)
+    touch, (eta, s0, s1, s2), count, change = _gather(layout, waves, found, phases, x, y, r, whole, h, time, near)
 
     # the plane, as the depth under it: d + g (x - c)
     g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
@@ -93,52 +105,68 @@ def approach(level, waves, origin, r, whole, h, time, swell, flat):
     plane = Plane((c0, c1, c2), d, still, (g0, g1, g2), height, (gx, gy))
 
     # the rest
-    panels = min(max(1, math.ceil(change / PANEL)), PANELS)
-    smooth = near < waves.shape[0]
-    degree = int(whole[h, DEGREE])
-    return plane, Rest(near, degree, smooth, doublings(change), panels)
+    smooth, turning = int(layout[tiles.HELD]) > 0, layout[tiles.TURNING]
+    return plane, Rest(count, smooth, doublings(change), turning, (x, y), touch, time)
 
 
 @njit(cache=True, error_model="numpy")
-def _gather(waves, origin, r, whole, h, time, swell, flat):
-    """Sort the waves around a hull: near ones go to `swell`, all others into the polynomial `flat`.
+def _gather(layout, waves, found, phases, x, y, r, whole, h, time, near):
+    """Bring the near waves to a hull, and find the plane over its middle.
 
-    Returns the elevation over the middle, from the still level; its gradient in the hull's frame;
-    how many waves are near; and by how much the phase of any changes over the hull.
+    Returns the elevation of the tiles there, with its gradient in the world; that of all waves, with
+    its gradient in the hull's frame; how many waves are near; and by how much the phase of any of
+    them changes over the hull.
     """
-    eta = g0 = g1 = g2 = steepest = 0.0
-    degree, limit = int(whole[h, DEGREE]), whole[h, LIMIT]
-    c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
-    e0, e1, e2 = triple(whole, h, WHOLE_HALF)
-    x, y, _ = place(origin, r, c0, c1, c2)
-    radius = math.sqrt(e0**2 + e1**2 + e2**2)
-    near = 0
-    flat[:] = 0.0
-    for w in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, w, AMPLITUDE)
-        phase = phase_at(waves, w, x, y, time)
+    eta = gx = gy = g0 = g1 = g2 = steepest = 0.0
+    held, count = int(layout[tiles.HELD]), waves.shape[1]
+    if held > 0:
+        t = find_tile(layout, waves, found, phases, x, y, time)
+        eta, gx, gy = tangent_in(layout, found, t, x, y)
+    touch = (eta, gx, gy)
+    for w in range(held, count):
+        amplitude, kx, ky = waves[AMPLITUDE, w], waves[KX, w], waves[KY, w]
+        phase = kx * x + ky * y - waves[tiles.OMEGA, w] * time + waves[tiles.PHASE, w]
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
         steepest = max(steepest, math.sqrt(kx * kx + ky * ky))
-        if planning.remainder(waves, w, radius) <= limit:
-            add_series(flat, 0, degree, crest, slope, kx, ky)
-            continue
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
-        swell[near, CREST], swell[near, SLOPE] = crest, slope
-        swell[near, K], swell[near, K + 1], swell[near, K + 2] = k0, k1, k2
-        swell[near, K_WORLD], swell[near, K_WORLD + 1] = kx, ky
-        near += 1
+        n = w - held
+        near[n, CREST], near[n, SLOPE] = crest, slope
+        near[n, K], near[n, K + 1], near[n, K + 2] = k0, k1, k2
+        near[n, K_WORLD], near[n, K_WORLD + 1] = kx, ky
         eta += crest
         g0 -= slope * k0
         g1 -= slope * k1
         g2 -= slope * k2
+    g0, g1, g2 = g0 + gx * r[0] + gy * r[3], g1 + gx * r[1] + gy * r[4], g2 + gx * r[2] + gy * r[5]
+    e0, e1, e2 = triple(whole, h, WHOLE_HALF)
+    radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
+    return touch, (eta, g0, g1, g2), count - held, steepest * radius
 
-    # the plane of the polynomial: coefficients of 1, y and x
-    one, sx, sy = flat[0], flat[degree + 1], flat[1]
-    flat[0] = flat[1] = flat[degree + 1] = 0.0
-    g0 = g0 + sx * r[0] + sy * r[3]
-    g1 = g1 + sx * r[1] + sy * r[4]
-    g2 = g2 + sx * r[2] + sy * r[5]
-    return eta + one, g0, g1, g2, near, steepest * radius
+
+@njit(cache=True, error_model="numpy", inline="always")
+def over_node(rest, r, layout, waves, found, phases, near, away):
+    """The rest of the elevation over a place `away` from the middle of the hull, in its frame.
+
+    Also its gradient there, in the frame of the hull.
+    """
+    e = s0 = s1 = s2 = 0.0
+    if rest.smooth:
+        x, y, _ = rotate(r, away[0], away[1], away[2])
+        t = find_tile(layout, waves, found, phases, rest.place[0] + x, rest.place[1] + y, rest.time)
+        e, sx, sy = tangent_in(layout, found, t, rest.place[0] + x, rest.place[1] + y)
+        eta, gx, gy = rest.touch
+        e -= eta + gx * x + gy * y
+        sx, sy = sx - gx, sy - gy
+        s0, s1, s2 = sx * r[0] + sy * r[3], sx * r[1] + sy * r[4], sx * r[2] + sy * r[5]
+    for w in range(rest.near):
+        crest, steep = near[w, CREST], near[w, SLOPE]
+        k0, k1, k2 = triple(near, w, K)
+        angle = k0 * away[0] + k1 * away[1] + k2 * away[2]
+        sine, cosine = bend(angle, rest.doubled)
+        e += crest * cosine - steep * sine
+        change = -steep * cosine - crest * (sine + angle)
+        s0, s1, s2 = s0 + change * k0, s1 + change * k1, s2 + change * k2
+    return e, (s0, s1, s2)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -163,25 +191,59 @@ def set_depths(vertices, first, last, plane, depths):
 
 
 @njit(cache=True, error_model="numpy")
-def add_rest(vertices, first, last, middle, r, rest, swell, flat, depths, room):
-    """Add the rest to depths under the plane, of vertices from `first` up to `last`.
-
-    `room` is scratch.
-    """
+def add_rest(vertices, first, last, middle, r, rest, layout, waves, found, phases, near, depths):
+    """Add the rest to depths under the plane, of vertices from `first` up to `last`."""
     c0, c1, c2 = middle
     if rest.smooth:
-        for n in range(first, last):
-            x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
-            room[0, n - first], room[1, n - first] = x, y
-        add_at_many(flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths)
+        n = first
+        while n < last:
+            # four at once, the last ones more than once
+            i, j, k = min(n + 1, last - 1), min(n + 2, last - 1), min(n + 3, last - 1)
+            a = _seen(vertices, n, c0, c1, c2, r)
+            b = _seen(vertices, i, c0, c1, c2, r)
+            c = _seen(vertices, j, c0, c1, c2, r)
+            d = _seen(vertices, k, c0, c1, c2, r)
+            e = _four_rests(rest, layout, waves, found, phases, a, b, c, d)
+            depths[n - first] += e[0]
+            if n + 1 < last:
+                depths[i - first] += e[1]
+            if n + 2 < last:
+                depths[j - first] += e[2]
+            if n + 3 < last:
+                depths[k - first] += e[3]
+            n += 4
     for w in range(rest.near):
-        crest, slope = swell[w, CREST], swell[w, SLOPE]
-        k0, k1, k2 = triple(swell, w, K)
+        crest, slope = near[w, CREST], near[w, SLOPE]
+        k0, k1, k2 = triple(near, w, K)
         shift = k0 * c0 + k1 * c1 + k2 * c2
         for n in range(first, last):
             angle = k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - shift
             sine, cosine = bend(angle, rest.doubled)
             depths[n - first] += crest * cosine - slope * sine
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _seen(vertices, n, c0, c1, c2, r):
+    """A vertex seen from above, from the middle of the hull."""
+    x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
+    return x, y
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _four_rests(rest, layout, waves, found, phases, a, b, c, d):
+    """What tiles have beside the plane at four places, from the middle of the hull."""
+    (x, y), (eta, gx, gy) = rest.place, rest.touch
+    e0, e1, e2, e3 = four_elevations(
+        layout, waves, found, phases,
+        (x + a[0], x + b[0], x + c[0], x + d[0]), (y + a[1], y + b[1], y + c[1], y + d[1]),
+        rest.time,
+    )  # fmt: skip
+    return (
+        e0 - (eta + gx * a[0] + gy * a[1]),
+        e1 - (eta + gx * b[0] + gy * b[1]),
+        e2 - (eta + gx * c[0] + gy * c[1]),
+        e3 - (eta + gx * d[0] + gy * d[1]),
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -197,36 +259,63 @@ def seen_from_above(plane, r, p, q):
 
 
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(ends, height, slope, rest, swell, flat, ray):
+def waterplane_moments(ends, height, slope, rest, layout, waves, found, phases, near):
     """Integrals of e, x e, y e and (plane + e / 2) e over a triangle of the waterplane.
 
     Its corners are the middle of the hull and the `ends` of a cut. The plane has the `height` over
     the middle, and the `slope`. All is seen from above. By Gauss outward, in panels of at most
-    `PANEL` / k, and along the cut; `ray` is scratch.
+    `PANEL` / k, and along the cut.
     """
     px, py, qx, qy = ends
     gx, gy = slope
     i0 = ix = iy = iz = 0.0
-    apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
-    slim = apart <= SLIM * (px * px + py * py + qx * qx + qy * qy)
+    p, q = px * px + py * py, qx * qx + qy * qy
+    slim = (qx - px) * (qx - px) + (qy - py) * (qy - py) <= SLIM * (p + q)
+    panels = min(max(1, math.ceil(rest.turning * math.sqrt(max(p, q)) / PANEL)), PANELS)
     for n in range(1 if slim else 2):
         along, share = _ONE[0] if slim else _TWO[n]
         ex, ey = px + along * (qx - px), py + along * (qy - py)
-        if rest.smooth:
-            set_along_ray(flat, rest.degree, ex, ey, ray)
-        for panel in range(rest.panels):
-            for out, weight in _FOUR:
-                u = (panel + out) / rest.panels
-                x, y = u * ex, u * ey
-                e = on_ray(ray, rest.degree, u) if rest.smooth else 0.0
-                for w in range(rest.near):
-                    kx, ky = swell[w, K_WORLD], swell[w, K_WORLD + 1]
-                    sine, cosine = bend(kx * x + ky * y, rest.doubled)
-                    e += swell[w, CREST] * cosine - swell[w, SLOPE] * sine
-                e_dA = u * weight * share / rest.panels * e
+        for panel in range(panels):
+            u = _outward(panel, panels)
+            e = _along_ray(ex, ey, u, rest, layout, waves, found, phases, near)
+            for i in range(4):
+                x, y = u[i] * ex, u[i] * ey
+                e_dA = u[i] * _FOUR[i][1] * share / panels * e[i]
                 i0 += e_dA
                 ix += x * e_dA
                 iy += y * e_dA
-                iz += (height + gx * x + gy * y + 0.5 * e) * e_dA
+                iz += (height + gx * x + gy * y + 0.5 * e[i]) * e_dA
     whole = px * qy - py * qx
     return whole * i0, whole * ix, whole * iy, whole * iz
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _outward(panel, panels):
+    """The four points of a panel, as parts of the way from the middle."""
+    return (
+        (panel + _FOUR[0][0]) / panels,
+        (panel + _FOUR[1][0]) / panels,
+        (panel + _FOUR[2][0]) / panels,
+        (panel + _FOUR[3][0]) / panels,
+    )
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _along_ray(x, y, u, rest, layout, waves, found, phases, near):
+    """The rest at four parts u of the way from the middle of the hull to a place."""
+    e0 = e1 = e2 = e3 = 0.0
+    if rest.smooth:
+        a, b, c, d = (
+            (u[0] * x, u[0] * y), (u[1] * x, u[1] * y), (u[2] * x, u[2] * y), (u[3] * x, u[3] * y),
+        )  # fmt: skip
+        e0, e1, e2, e3 = _four_rests(rest, layout, waves, found, phases, a, b, c, d)
+    for w in range(rest.near):
+        angle = near[w, K_WORLD] * x + near[w, K_WORLD + 1] * y
+        crest, slope = near[w, CREST], near[w, SLOPE]
+        s0, c0 = bend(u[0] * angle, rest.doubled)
+        s1, c1 = bend(u[1] * angle, rest.doubled)
+        s2, c2 = bend(u[2] * angle, rest.doubled)
+        s3, c3 = bend(u[3] * angle, rest.doubled)
+        e0, e1 = e0 + crest * c0 - slope * s0, e1 + crest * c1 - slope * s1
+        e2, e3 = e2 + crest * c2 - slope * s2, e3 + crest * c3 - slope * s3
+    return e0, e1, e2, e3

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MethodError, describe
-from buoyancy_mj.kernels import clip, planning, pressure, tree, waterplane
+from buoyancy_mj.kernels import clip, pressure, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
@@ -20,6 +20,7 @@ from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.tree import Tree, build_tree
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.hull_set import HullSet
+from buoyancy_mj.submersion.sea_tiles import lay_blocks, lay_tiles
 from buoyancy_mj.submersion.wave_limits import check_waves, find_longest_edges
 from buoyancy_mj.values import set_number
 
@@ -118,7 +119,7 @@ class PackedHulls:
         """Submerge all hulls at a time [s]; return `results`, see `methods.Packed`."""
         geoms = Geoms(positions, rotations)
         sea, scratch = self._sea, self.scratch.cut
-        clip.submerge_hulls(self.hulls, geoms, sea.level, sea.waves, time, scratch, self.results)
+        clip.submerge_hulls(self.hulls, geoms, sea.level, time, scratch, self.results)
         return self.results
 
     def press(
@@ -137,7 +138,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             self._sea._replace(pressure=int(model)),
             time,
-            self.scratch.pressure,
+            self.scratch,
             rows,
         )
         return rows
@@ -198,6 +199,7 @@ def _hulls(
     vectors = 0.5 * np.cross(b - a, c - a)
     shares = np.repeat(fills, np.diff(first_face))[:, None]
 
+    sea_tiles = lay_tiles(waves, [0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes])
     return Hulls(
         vertices,
         faces,
@@ -206,18 +208,19 @@ def _hulls(
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
-        np.array([_whole(mesh, fill, waves) for mesh, fill in zip(meshes, fills, strict=True)]),
+        np.array([_whole(mesh, fill) for mesh, fill in zip(meshes, fills, strict=True)]),
         pressure.typical(waves),
+        sea_tiles,
+        lay_blocks(waves, sea_tiles),
         frames,
     )
 
 
-def _whole(mesh: TriMesh, fill: float, waves: NDArray[np.float64]) -> list[float]:
+def _whole(mesh: TriMesh, fill: float) -> list[float]:
     """One row of `Hulls.whole`."""
     half = 0.5 * mesh.extents
-    plan = planning.plan(waves, float(np.linalg.norm(half)))
     middle = mesh.bounds.mean(axis=0)
-    return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, *plan]
+    return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill]
 
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:

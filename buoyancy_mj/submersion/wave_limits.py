@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning, WaterError
-from buoyancy_mj.kernels import planning, swell
+from buoyancy_mj.kernels import swell, tiles
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.submersion.sea_tiles import lay_tiles
 
 MOST_TRIANGLES = 200_000
 """Most triangles to which a mesh is refined for the waves."""
@@ -39,12 +40,11 @@ def check_waves(radius: float, waves: NDArray[np.float64]) -> None:
             "fewer components has longer ones)"
         )
 
-    # waves that are too short for the polynomials are summed one by one
+    # waves that are too short for tiles are summed one by one
     panels = math.ceil(steepest * radius / swell.PANEL)
     if panels * len(waves) <= MOST_PANELS:
         return
-    _, limit, _ = planning.plan(waves, radius)
-    short = sum(planning.remainder(waves, w, radius) > limit for w in range(len(waves)))
+    short = len(waves) - int(lay_tiles(waves, [radius]).layout[tiles.HELD])
     if short * panels > MOST_PANELS:
         raise WaterError(
             f"the water has {short} waves that are short for a hull {2.0 * radius:.3g} m from "

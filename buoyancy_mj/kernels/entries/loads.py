@@ -33,7 +33,6 @@ def submerge(model: int64, data: int64, record: int64, water: int64, place: int6
         loads.hulls,
         engine.geoms,
         loads.sea.level,
-        loads.sea.waves,
         engine.time,
         arrays.scratch.cut,
         arrays.record.wet,

@@ -1,0 +1,186 @@
+"""How a sea is laid out in tiles: how large they are, and of which degree their polynomials.
+
+A wave of amplitude a and components kx, ky leaves at most
+
+    4 a ((|kx| + |ky|) b / 2)^(n + 1) / (n + 1)!
+
+out of a polynomial of degree n in a square of sides 2 b, fitted at Chebyshev's points: the first
+term left out of its series in Chebyshev's polynomials (Abramowitz and Stegun 1964, 9.1.44), which
+is the largest and alone counts.
+"""
+
+import functools
+import itertools
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from buoyancy_mj.kernels import blocks, tiles
+from buoyancy_mj.kernels.blocks import Blocks
+from buoyancy_mj.kernels.polynomials import LARGEST
+from buoyancy_mj.kernels.tiles import Tiles
+from buoyancy_mj.kernels.still_water import decay, seabed
+from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, PHASE
+
+ACCURACY = 1e-5
+"""The part of a hull's radius that tiles may leave out of the elevation in all."""
+FEW = 4
+"""Waves up to which they are summed one by one."""
+LEAST = 2
+"""Least degree of the polynomials."""
+OVERLAP = 1.5
+"""Side of a tile over half the side of the square in which its polynomial holds."""
+_POINTS = 12
+"""Chebyshev's points along a side of a tile, at which polynomials are fitted."""
+_ASKED = 300
+"""How often the elevation is asked for in a pass, about."""
+
+
+def lay_tiles(waves: NDArray[np.float64], radii: Sequence[float]) -> Tiles:
+    """Lay a sea out in tiles.
+
+    All that they leave out of the elevation is within `ACCURACY` of the smallest radius.
+
+    Args:
+        waves: of the sea (w, 7), see `kernels.waves`.
+        radii: of the hulls (h,) [m].
+    """
+    rows = waves[_order(waves), AMPLITUDE : PHASE + 1].T.copy()
+    amplitudes, k = np.abs(rows[AMPLITUDE]), np.hypot(rows[KX], rows[KY])
+    allowed = ACCURACY * min(radii)
+    held, degree, reach = _plan(rows, allowed, max(radii))
+    shares = np.zeros((tiles.NUMBERS, len(k)))
+    if held:
+        shares[: len(_exponents(degree)), :held] = _fit(rows[:, :held], degree, reach)
+    layout = np.zeros(12)
+    layout[[tiles.PER_SIDE, tiles.PER_REACH]] = 1.0 / (OVERLAP * reach), 1.0 / reach
+    layout[[tiles.SIDE, tiles.REACH, tiles.HELD, tiles.DEGREE]] = OVERLAP * reach, reach, held, degree
+    layout[tiles.HEIGHT : tiles.TWIST + 1] = [(amplitudes * k**n).sum() for n in range(4)]
+    if amplitudes.any():
+        layout[tiles.TURNING] = ((amplitudes * k**8).sum() / amplitudes.sum()) ** (1 / 8)
+    if held:
+        layout[tiles.ROUNDING] = allowed * (degree / reach) ** 2
+    return Tiles(layout, np.concatenate([rows, shares]))
+
+
+def _order(waves: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The order of the waves, the longest first."""
+    return np.argsort(np.hypot(waves[:, KX], waves[:, KY]), kind="stable")
+
+
+def _plan(
+    rows: NDArray[np.float64], allowed: float, radius: float
+) -> tuple[int, int, float]:
+    """How many waves tiles hold, the degree of their polynomials, and half their width [m].
+
+    What costs least over a hull of a radius [m].
+    """
+    many = rows.shape[1]
+    if many <= FEW:
+        return 0, LEAST, 1.0
+    degrees = np.arange(LEAST, LARGEST + 1)
+    powers = degrees[:, None] + 1
+
+    # the width that the first waves allow for each degree (degrees, waves)
+    reaches = np.abs(rows[KX]) + np.abs(rows[KY])
+    left = np.cumsum(np.abs(rows[AMPLITUDE]) * reaches**powers, axis=1)
+    factorials = np.array([math.factorial(d + 1) for d in degrees])[:, None]
+    with np.errstate(divide="ignore"):
+        halves = 2.0 * (0.25 * allowed * factorials / left) ** (1.0 / powers)
+    halves = np.minimum(halves, 4.0 * radius)
+
+    # about how long it takes [ns] to fill all tiles over the hull, and to ask for elevations
+    held = np.arange(1, many + 1)
+    sizes = (powers * (powers + 1) // 2).astype(float)
+    count = (1.0 + 2.0 * radius / (OVERLAP * halves)) ** 2
+    cost = count * (200.0 + held * (2.0 + 0.1 * sizes)) + _ASKED * (0.6 * sizes + 15.0 * (many - held))
+    degree, last = np.unravel_index(np.argmin(cost), cost.shape)
+    return int(held[last]), int(degrees[degree]), float(halves[degree, last])
+
+
+@functools.cache
+def _exponents(degree: int) -> tuple[tuple[int, int], ...]:
+    """Exponents of x and y, in the order of the coefficients."""
+    return tuple((m, n) for m in range(degree + 1) for n in range(degree + 1 - m))
+
+
+@functools.cache
+def _fitting(degree: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Chebyshev's points in a square (p, 2), and what values there make of coefficients (c, p)."""
+    line = np.cos((np.arange(_POINTS) + 0.5) * math.pi / _POINTS)
+    points = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
+    powers = [points[:, 0] ** m * points[:, 1] ** n for m, n in _exponents(degree)]
+    return points, np.linalg.pinv(np.column_stack(powers))
+
+
+def _fit(rows: NDArray[np.float64], degree: int, reach: float) -> NDArray[np.float64]:
+    """What each wave adds to the coefficients of a tile, see `Tiles.shares`."""
+    points, fit = _fitting(degree)
+    phases = points @ (reach * rows[[KX, KY]])
+    odd = np.array([sum(exponents) % 2 == 1 for exponents in _exponents(degree)])[:, None]
+    waves: NDArray[np.float64] = np.where(odd, -(fit @ np.sin(phases)), fit @ np.cos(phases))
+    return waves * rows[AMPLITUDE]
+
+
+# blocks
+
+
+BLOCK = 0.5
+"""Half the side of the cube in which the polynomial of a block holds, times the wave number whose
+fifth derivatives are as large as those of all waves."""
+
+
+def lay_blocks(waves: NDArray[np.float64], sea: Tiles) -> Blocks:
+    """Lay the water under a sea out in blocks; the waves stand in the order of its tiles.
+
+    Args:
+        waves: of the sea (w, 7), see `kernels.waves`.
+        sea: its tiles.
+    """
+    rows = waves[_order(waves)]
+    square, k = rows[:, AMPLITUDE] ** 2, np.hypot(rows[:, KX], rows[:, KY])
+    steep = ((square @ k**10) / square.sum()) ** 0.1 if square.any() else 0.0
+    reach = BLOCK / steep if steep else 1.0
+    bottoms = np.array([seabed.py_func(*pair) for pair in zip(k, rows[:, DEPTH], strict=True)])
+    tanh = (1.0 - bottoms) / (1.0 + bottoms)
+    mean = float(square @ k / square.sum()) if square.any() else 0.0
+    depth = float(rows[:, DEPTH].min(initial=math.inf))
+    layout = np.zeros(7)
+    layout[[blocks.SIDE, blocks.REACH]] = OVERLAP * reach, reach
+    layout[[blocks.FALL, blocks.DEPTH]] = decay.py_func(mean, depth), depth
+    layout[blocks.WHOLE] = 0.5 * square @ (k * tanh)
+    layout[[blocks.TIDAL, blocks.SHALLOW]] = not k.all(), bottoms.any()
+    taylor = [
+        (-1.0 if (m + n) % 4 in (1, 2) else 1.0)
+        / (math.factorial(m) * math.factorial(n))
+        * rows[:, KX] ** m
+        * rows[:, KY] ** n
+        * rows[:, AMPLITUDE]
+        for m, n in _exponents(blocks.WAVE_DEGREE)
+    ]
+    tide = np.where(k == 0.0, rows[:, AMPLITUDE], 0.0)
+    points, fit = _block_fitting()
+    table = np.array([k, bottoms, 0.5 * square * k * tanh, tide, *taylor])
+    return Blocks(layout, table.reshape(-1, len(k)), points, fit)
+
+
+@functools.cache
+def _block_fitting() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points in a cube (3, p), and what values there make of coefficients (c, p).
+
+    The points are every other one of Chebyshev's in a cube.
+    """
+    line = np.cos(np.arange(5) * math.pi / 4.0)
+    grid = np.array(list(itertools.product(range(5), repeat=3)))
+    points = line[grid[grid.sum(axis=1) % 2 == 0]].T
+    powers = [
+        points[2] ** p * points[0] ** m * points[1] ** n
+        for p in range(blocks.DEGREE + 1)
+        for m, n in _exponents(blocks.DEGREE - p)
+    ]
+    fit = np.linalg.pinv(np.column_stack(powers))
+    # what is left of the room stands in the middle and counts for nothing
+    left = blocks.SAMPLES - points.shape[1]
+    return np.pad(points, ((0, 0), (0, left))), np.pad(fit, ((0, 0), (0, left)))
