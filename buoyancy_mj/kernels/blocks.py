@@ -34,7 +34,7 @@ holds [m]; `still_water.decay` of the waves; the depth of the water; what the wa
 head at the still level; whether all the water rises and falls; whether any wave feels the bottom."""
 DEGREE = 4
 """Degree of the polynomial of the head."""
-WAVE_DEGREE = 6
+WAVE_DEGREE = 5
 """Degree of the polynomials of what waves sum up to."""
 POWERS = 6
 """Degree of the polynomial of what the waves take off the mean head."""

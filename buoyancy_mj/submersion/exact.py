@@ -199,7 +199,7 @@ def _hulls(
     vectors = 0.5 * np.cross(b - a, c - a)
     shares = np.repeat(fills, np.diff(first_face))[:, None]
 
-    sea_tiles = lay_tiles(waves, [0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes])
+    radii = [0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes]
     return Hulls(
         vertices,
         faces,
@@ -210,8 +210,8 @@ def _hulls(
         moments,
         np.array([_whole(mesh, fill) for mesh, fill in zip(meshes, fills, strict=True)]),
         pressure.typical(waves),
-        sea_tiles,
-        lay_blocks(waves, sea_tiles),
+        lay_tiles(waves, radii),
+        lay_blocks(waves, radii),
         frames,
     )
 

@@ -132,17 +132,17 @@ BLOCK = 0.5
 fifth derivatives are as large as those of all waves."""
 
 
-def lay_blocks(waves: NDArray[np.float64], sea: Tiles) -> Blocks:
+def lay_blocks(waves: NDArray[np.float64], radii: Sequence[float]) -> Blocks:
     """Lay the water under a sea out in blocks; the waves stand in the order of its tiles.
 
     Args:
         waves: of the sea (w, 7), see `kernels.waves`.
-        sea: its tiles.
+        radii: of the hulls (h,) [m]; blocks are no larger than the largest.
     """
     rows = waves[_order(waves)]
     square, k = rows[:, AMPLITUDE] ** 2, np.hypot(rows[:, KX], rows[:, KY])
     steep = ((square @ k**10) / square.sum()) ** 0.1 if square.any() else 0.0
-    reach = BLOCK / steep if steep else 1.0
+    reach = min(BLOCK / steep if steep else math.inf, max(radii))
     bottoms = np.array([seabed.py_func(*pair) for pair in zip(k, rows[:, DEPTH], strict=True)])
     tanh = (1.0 - bottoms) / (1.0 + bottoms)
     mean = float(square @ k / square.sum()) if square.any() else 0.0
@@ -163,7 +163,7 @@ def lay_blocks(waves: NDArray[np.float64], sea: Tiles) -> Blocks:
     tide = np.where(k == 0.0, rows[:, AMPLITUDE], 0.0)
     points, fit = _block_fitting()
     table = np.array([k, bottoms, 0.5 * square * k * tanh, tide, *taylor])
-    return Blocks(layout, table.reshape(-1, len(k)), points, fit)
+    return Blocks(layout, table.reshape(blocks.TAYLOR + blocks.FLAT, len(k)), points, fit)
 
 
 @functools.cache
