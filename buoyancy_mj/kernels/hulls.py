@@ -9,8 +9,6 @@ FILL, DEGREE, LIMIT, BOTTOM_DEGREE = 11, 12, 13, 14
 """Columns of `Hulls.whole`: volume that the whole hull displaces, its centroid (3), the area of its
 faces, middle (3) and half sides (3) of its bounding box, the part of its volume that displaces
 water, and its `planning.plan` (3)."""
-AREA_OF_FACE = 3
-"""Column of `Hulls.areas` behind the vector area (3)."""
 
 
 class Hulls(NamedTuple):
@@ -20,8 +18,10 @@ class Hulls(NamedTuple):
     """Of all hulls [m]; leaf by leaf, so that leaves share none."""
     faces: Annotated[Corners, ("f", 3)]
     """Indices into the vertices, in the order of the leaves."""
-    areas: Annotated[Doubles, ("f", 4)]
-    """Vector area of each face, times the part of its hull that displaces, and its area [m^2]."""
+    areas: Annotated[Doubles, ("f", 3)]
+    """Vector area of each face, times the part of its hull that displaces [m^2]."""
+    sizes: Annotated[Doubles, ("f",)]
+    """Area of each face [m^2]."""
     nodes: Annotated[Words, ("h + 1",)]
     """First node of each hull, and the end of all."""
     spans: Annotated[Words, ("n", 5)]

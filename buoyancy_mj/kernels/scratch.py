@@ -6,8 +6,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.kernels import local, swell
-from buoyancy_mj.kernels.arrays import Doubles, Words, leaves
+from buoyancy_mj.kernels import cuts, local, swell
+from buoyancy_mj.kernels.arrays import Corners, Doubles, Words, leaves
 from buoyancy_mj.kernels.expansions import NODES
 from buoyancy_mj.kernels.planning import MOST
 from buoyancy_mj.kernels.quadrature import PLACES
@@ -16,8 +16,12 @@ from buoyancy_mj.kernels.quadrature import PLACES
 class CutScratch(NamedTuple):
     """For `clip` and `waterplane`."""
 
-    depths: Annotated[Doubles, (5, "v")]
-    """Depths of the vertices of a leaf, and what they are found by."""
+    seen: Annotated[Doubles, (6, "v")]
+    """The vertices of a leaf, seen from above, their depths, and what these are found by."""
+    sorted: Annotated[Corners, (3, "v")]
+    """The faces of a leaf, sorted by `leaves`."""
+    cuts: Annotated[Doubles, (cuts.ROOM,)]
+    """The triangles of `cuts`."""
     swell: Annotated[Doubles, ("w", swell.COLUMNS)]
     """The near waves of `swell`."""
     flat: Annotated[Doubles, (local.FLAT,)]
@@ -55,7 +59,7 @@ class Scratch(NamedTuple):
 
 
 def new_scratches(count: int, vertices: int, waves: int) -> list[Scratch]:
-    """Scratches for leaves of so many vertices, and for so many waves.
+    """Scratches for leaves of so many vertices, and no more faces, and for so many waves.
 
     Each array of all of them is one block: of a large block, what nobody writes to costs no memory.
     """

@@ -9,19 +9,23 @@ polynomial that holds all others, see `local`.
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels import planning
+from buoyancy_mj.kernels.cuts import P_X, P_Y, Q_X, Q_Y
 from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
 from buoyancy_mj.kernels.series import bend, doublings
 from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, phase_at
 
-CREST, SLOPE, K, K_WORLD, COLUMNS = 0, 1, 2, 5, 7
+CREST, SLOPE, K, K_X, K_Y, COLUMNS = 0, 1, 2, 5, 6, 7
 """Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave
 vector in the hull's frame (3) and in the world's (2)."""
 
+# unsigned, as Numba indexes fastest
+_X, _Y, _Z = np.uint64(0), np.uint64(1), np.uint64(2)
 # Gauss-Legendre points and weights between 0 and 1
 _ONE = ((0.5, 1.0),)
 _TWO = ((0.5 - math.sqrt(1.0 / 12.0), 0.5), (0.5 + math.sqrt(1.0 / 12.0), 0.5))
@@ -125,7 +129,7 @@ def _gather(waves, origin, r, whole, h, time, swell, flat):
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
         swell[near, CREST], swell[near, SLOPE] = crest, slope
         swell[near, K], swell[near, K + 1], swell[near, K + 2] = k0, k1, k2
-        swell[near, K_WORLD], swell[near, K_WORLD + 1] = kx, ky
+        swell[near, K_X], swell[near, K_Y] = kx, ky
         near += 1
         eta += crest
         g0 -= slope * k0
@@ -156,53 +160,63 @@ def depth_away(plane, away):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def set_depths(vertices, first, last, plane, depths):
-    """Write the depths under the plane of vertices from `first` up to `last`."""
-    for n in range(first, last):
-        depths[n - first] = depth_under(plane, triple(vertices, n, 0))
+def see(vertices, first, count, plane, r, x, y, d):
+    """See vertices from `first` on, from above, from the middle of the hull.
+
+    Their places along x and y of the world, and their depths under the plane, are written.
+    """
+    c0, c1, c2 = plane.middle
+    g0, g1, g2 = plane.gradient
+    cx, cy, _ = rotate(r, c0, c1, c2)
+    r0, r1, r2, r3, r4, r5 = r[0], r[1], r[2], r[3], r[4], r[5]
+    for n in range(count):
+        p0, p1, p2 = vertices[first + n, _X], vertices[first + n, _Y], vertices[first + n, _Z]
+        x[n] = r0 * p0 + r1 * p1 + r2 * p2 - cx
+        y[n] = r3 * p0 + r4 * p1 + r5 * p2 - cy
+        d[n] = plane.origin_depth + (g0 * p0 + g1 * p1 + g2 * p2)
 
 
 @njit(cache=True, error_model="numpy")
-def add_rest(vertices, first, last, middle, r, rest, swell, flat, depths, room):
-    """Add the rest to depths under the plane, of vertices from `first` up to `last`.
+def add_rest(x, y, d, count, rest, swell, flat, w, room):
+    """Write the depths w under the surface at places that have depths d under the plane.
 
     `room` is scratch.
     """
-    c0, c1, c2 = middle
+    for n in range(count):
+        w[n] = d[n]
     if rest.smooth:
-        for n in range(first, last):
-            x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
-            room[0, n - first], room[1, n - first] = x, y
-        add_at_many(flat, 0, rest.degree, room[0], room[1], last - first, room[2], room[3], depths)
-    for w in range(rest.near):
-        crest, slope = swell[w, CREST], swell[w, SLOPE]
-        k0, k1, k2 = triple(swell, w, K)
-        shift = k0 * c0 + k1 * c1 + k2 * c2
-        for n in range(first, last):
-            angle = k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - shift
-            sine, cosine = bend(angle, rest.doubled)
-            depths[n - first] += crest * cosine - slope * sine
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def seen_from_above(plane, r, p, q):
-    """Two points of the hull's frame, seen from above, from the middle of the hull.
-
-    Their coordinates are along x and y of the world.
-    """
-    c0, c1, c2 = plane.middle
-    px, py, _ = rotate(r, p[0] - c0, p[1] - c1, p[2] - c2)
-    qx, qy, _ = rotate(r, q[0] - c0, q[1] - c1, q[2] - c2)
-    return px, py, qx, qy
+        add_at_many(flat, 0, rest.degree, x, y, count, room[0], room[1], w)
+    for i in range(rest.near):
+        crest, slope, kx, ky = swell[i, CREST], swell[i, SLOPE], swell[i, K_X], swell[i, K_Y]
+        for n in range(count):
+            sine, cosine = bend(kx * x[n] + ky * y[n], rest.doubled)
+            w[n] += crest * cosine - slope * sine
 
 
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(ends, height, slope, rest, swell, flat, ray):
-    """Integrals of e, x e, y e and (plane + e / 2) e over a triangle of the waterplane.
+def waterplane_moments(cuts, count, plane, rest, swell, flat, ray):
+    """Integrals of e, x e, y e and (plane + e / 2) e over triangles of the waterplane.
 
-    Its corners are the middle of the hull and the `ends` of a cut. The plane has the `height` over
-    the middle, and the `slope`. All is seen from above. By Gauss outward, in panels of at most
-    `PANEL` / k, and along the cut; `ray` is scratch.
+    The corners of each are the middle of the hull and the ends of one of `cuts`. All is seen from
+    above; `ray` is scratch.
+    """
+    i0 = ix = iy = iz = 0.0
+    for n in range(count):
+        ends = cuts[P_X + n], cuts[P_Y + n], cuts[Q_X + n], cuts[Q_Y + n]
+        one, x, y, z = _on_triangle(ends, plane.height, plane.slope, rest, swell, flat, ray)
+        i0 += one
+        ix += x
+        iy += y
+        iz += z
+    return i0, ix, iy, iz
+
+
+@njit(cache=True, error_model="numpy")
+def _on_triangle(ends, height, slope, rest, swell, flat, ray):
+    """One of the triangles of `waterplane_moments`.
+
+    The plane has the `height` over the middle, and the `slope`. By Gauss outward, in panels of at
+    most `PANEL` / k, and along the cut.
     """
     px, py, qx, qy = ends
     gx, gy = slope
@@ -220,7 +234,7 @@ def waterplane_moments(ends, height, slope, rest, swell, flat, ray):
                 x, y = u * ex, u * ey
                 e = on_ray(ray, rest.degree, u) if rest.smooth else 0.0
                 for w in range(rest.near):
-                    kx, ky = swell[w, K_WORLD], swell[w, K_WORLD + 1]
+                    kx, ky = swell[w, K_X], swell[w, K_Y]
                     sine, cosine = bend(kx * x + ky * y, rest.doubled)
                     e += swell[w, CREST] * cosine - swell[w, SLOPE] * sine
                 e_dA = u * weight * share / rest.panels * e

@@ -88,9 +88,10 @@ class PackedHulls:
         self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, self._sea.waves))
         """The hulls as kernels read them."""
         spans = self.hulls.spans
-        leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
-        vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
-        self._most = int(vertices[leaves].max())
+        leaves = spans[spans[:, tree.BEHIND] == np.arange(len(spans)) + 1]
+        faces = leaves[:, tree.END_FACE] - leaves[:, tree.FIRST_FACE]
+        vertices = leaves[:, tree.END_VERTEX] - leaves[:, tree.FIRST_VERTEX]
+        self._most = int(max(faces.max(), vertices.max()))
         (self.scratch,) = self.new_scratches(1)
         """Where `submerge` and `press` work."""
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
@@ -159,7 +160,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             about,
             self._sea.level,
-            self.scratch.cut.depths[0],
+            self.scratch.cut.seen[0],
             rows,
         )
         return rows
@@ -201,7 +202,8 @@ def _hulls(
     return Hulls(
         vertices,
         faces,
-        np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)]),
+        shares * vectors,
+        np.linalg.norm(vectors, axis=1),
         first_node,
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
