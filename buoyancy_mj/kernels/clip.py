@@ -136,15 +136,15 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their
     moments. `curvature` is a bound of the surface's over the hull.
     """
-    near, flat, ray = scratch.swell, scratch.flat, scratch.ray
+    near, flat = scratch.swell, scratch.flat
     vertices, faces, sizes = hulls.vertices, hulls.faces, hulls.sizes
     spans, boxes, node_moments = hulls.spans, hulls.boxes, hulls.moments
     plane, rest = swell.approach(level, waves, origin, r, hulls.whole, h, time, near, flat)
     wavy = rest.near > 0 or rest.smooth
 
     # what is seen of the vertices of a leaf; without waves the plane is the surface
-    x, y, d, room = scratch.seen[0], scratch.seen[1], scratch.seen[2], scratch.seen[4:]
-    w = scratch.seen[3] if wavy else d
+    x, y, d = scratch.seen[0], scratch.seen[1], scratch.seen[2]
+    w, row, polynomial = scratch.seen[3] if wavy else d, scratch.seen[4], scratch.seen[5]
     most, others, crossed = scratch.sorted[0], scratch.sorted[1], scratch.sorted[2]
     cuts, waiting = scratch.cuts, 0
 
@@ -183,7 +183,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             base, count = vertices_of(spans, i)
             swell.see(vertices, base, count, plane, r, x, y, d)
             if wavy:
-                swell.add_rest(x, y, d, count, rest, near, flat, w, room)
+                w[:count] = d[:count]
+                swell.add_rest(x, y, count, rest, near, flat, w, row, polynomial)
             first, behind = faces_of(spans, i)
             many, few, cut = sort_faces(faces, first, behind, base, w, most, others, crossed)
 
@@ -201,7 +202,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 if waiting == MOST:
                     sums = add(sums, sum_cuts(cuts, waiting))
                     if wavy:
-                        more = swell.waterplane_moments(cuts, waiting, plane, rest, near, flat, ray)
+                        more = swell.waterplane_moments(cuts, waiting, plane, rest, near, flat)
                         extra = _sum_four(extra, more)
                     waiting = 0
         if mostly:
@@ -212,7 +213,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     # the cuts that still wait
     sums = add(sums, sum_cuts(cuts, waiting))
     if wavy:
-        more = swell.waterplane_moments(cuts, waiting, plane, rest, near, flat, ray)
+        more = swell.waterplane_moments(cuts, waiting, plane, rest, near, flat)
         extra = _sum_four(extra, more)
     return _join(total, sums, extra, plane, r, hulls.whole[h, FILL])
 

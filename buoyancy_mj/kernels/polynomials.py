@@ -128,31 +128,6 @@ def _set_at_many(flat, end, degree, x, y, count, row, total):
 
 
 @njit(cache=True, error_model="numpy")
-def set_along_ray(flat, degree, x, y, ray):
-    """Write to `ray` the coefficients of u^j that a polynomial in x, y has at (u x, u y)."""
-    for j in range(degree + 1):
-        ray[j] = 0.0
-    i = 0
-    xs = 1.0
-    for m in range(degree + 1):
-        both = xs
-        for n in range(degree - m + 1):
-            ray[m + n] += flat[i] * both
-            both *= y
-            i += 1
-        xs *= x
-
-
-@njit(cache=True, error_model="numpy")
-def on_ray(ray, degree, u):
-    """A polynomial in u."""
-    total = 0.0
-    for j in range(degree, -1, -1):
-        total = total * u + ray[j]
-    return total
-
-
-@njit(cache=True, error_model="numpy")
 def deepen(solid, start, degree):
     """Write the layers z^2 and up of a polynomial without a Laplacian, from the layers below."""
     below, extent = start, size(degree)

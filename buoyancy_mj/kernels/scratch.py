@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import cuts, local, swell
 from buoyancy_mj.kernels.arrays import Corners, Doubles, Words, leaves
 from buoyancy_mj.kernels.expansions import NODES
-from buoyancy_mj.kernels.planning import MOST
 from buoyancy_mj.kernels.quadrature import PLACES
 
 
@@ -26,8 +25,6 @@ class CutScratch(NamedTuple):
     """The near waves of `swell`."""
     flat: Annotated[Doubles, (local.FLAT,)]
     """The polynomial of `swell`."""
-    ray: Annotated[Doubles, (MOST + 1,)]
-    """That polynomial along a ray."""
 
 
 class PressureScratch(NamedTuple):

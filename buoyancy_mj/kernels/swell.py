@@ -13,9 +13,9 @@ import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels import planning
-from buoyancy_mj.kernels.cuts import P_X, P_Y, Q_X, Q_Y
+from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y, ROOM
 from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
-from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
+from buoyancy_mj.kernels.polynomials import add_at_many, add_series
 from buoyancy_mj.kernels.series import bend, doublings
 from buoyancy_mj.kernels.vectors import place, rotate, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, phase_at
@@ -34,6 +34,10 @@ _FOUR = (
     (0.33000947820757187, 0.32607257743127308),
     (0.66999052179242813, 0.32607257743127308),
     (0.93056815579702629, 0.17392742256872692),
+)
+# columns of `cuts` behind the ends: places, the rest there, four integrals, and scratch
+_PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP, _ROW, _TOTAL = range(
+    4 * MOST, ROOM, MOST
 )
 PANEL = 2.0
 """Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
@@ -177,70 +181,77 @@ def see(vertices, first, count, plane, r, x, y, d):
 
 
 @njit(cache=True, error_model="numpy")
-def add_rest(x, y, d, count, rest, swell, flat, w, room):
-    """Write the depths w under the surface at places that have depths d under the plane.
+def add_rest(x, y, count, rest, swell, flat, out, row, total):
+    """Add the rest e at places seen from the middle of the hull to `out`.
 
-    `room` is scratch.
+    `row` and `total` are scratch.
     """
-    for n in range(count):
-        w[n] = d[n]
     if rest.smooth:
-        add_at_many(flat, 0, rest.degree, x, y, count, room[0], room[1], w)
+        add_at_many(flat, 0, rest.degree, x, y, count, row, total, out)
+    # each with a literal, so that the processor takes several places at once
     for i in range(rest.near):
-        crest, slope, kx, ky = swell[i, CREST], swell[i, SLOPE], swell[i, K_X], swell[i, K_Y]
-        for n in range(count):
-            sine, cosine = bend(kx * x[n] + ky * y[n], rest.doubled)
-            w[n] += crest * cosine - slope * sine
+        if rest.doubled == 0:
+            _add_wave(x, y, count, swell, i, 0, out)
+        elif rest.doubled == 1:
+            _add_wave(x, y, count, swell, i, 1, out)
+        elif rest.doubled == 2:
+            _add_wave(x, y, count, swell, i, 2, out)
+        else:
+            _add_wave(x, y, count, swell, i, 3, out)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add_wave(x, y, count, swell, i, doubled, out):
+    """Add the near wave i, less its plane, at places seen from the middle of the hull."""
+    crest, slope, kx, ky = swell[i, CREST], swell[i, SLOPE], swell[i, K_X], swell[i, K_Y]
+    for n in range(count):
+        sine, cosine = bend(kx * x[n] + ky * y[n], doubled)
+        out[n] += crest * cosine - slope * sine
 
 
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(cuts, count, plane, rest, swell, flat, ray):
+def waterplane_moments(cuts, count, plane, rest, swell, flat):
     """Integrals of e, x e, y e and (plane + e / 2) e over triangles of the waterplane.
 
     The corners of each are the middle of the hull and the ends of one of `cuts`. All is seen from
-    above; `ray` is scratch.
+    above. By Gauss outward, in panels of at most `PANEL` / k, and along the cuts.
     """
-    i0 = ix = iy = iz = 0.0
+    height, (gx, gy) = plane.height, plane.slope
+    x, y, e = cuts[_PLACE_X : _PLACE_X + MOST], cuts[_PLACE_Y:_REST], cuts[_REST:_ONES]
+    row, total = cuts[_ROW:_TOTAL], cuts[_TOTAL : _TOTAL + MOST]
+    slim = True
     for n in range(count):
-        ends = cuts[P_X + n], cuts[P_Y + n], cuts[Q_X + n], cuts[Q_Y + n]
-        one, x, y, z = _on_triangle(ends, plane.height, plane.slope, rest, swell, flat, ray)
-        i0 += one
-        ix += x
-        iy += y
-        iz += z
-    return i0, ix, iy, iz
-
-
-@njit(cache=True, error_model="numpy")
-def _on_triangle(ends, height, slope, rest, swell, flat, ray):
-    """One of the triangles of `waterplane_moments`.
-
-    The plane has the `height` over the middle, and the `slope`. By Gauss outward, in panels of at
-    most `PANEL` / k, and along the cut.
-    """
-    px, py, qx, qy = ends
-    gx, gy = slope
-    i0 = ix = iy = iz = 0.0
-    apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
-    slim = apart <= SLIM * (px * px + py * py + qx * qx + qy * qy)
-    for n in range(1 if slim else 2):
-        along, share = _ONE[0] if slim else _TWO[n]
-        ex, ey = px + along * (qx - px), py + along * (qy - py)
-        if rest.smooth:
-            set_along_ray(flat, rest.degree, ex, ey, ray)
+        cuts[_ONES + n] = cuts[_ALONG + n] = cuts[_ACROSS + n] = cuts[_UP + n] = 0.0
+        px, py, qx, qy = cuts[P_X + n], cuts[P_Y + n], cuts[Q_X + n], cuts[Q_Y + n]
+        apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
+        slim = slim and apart <= SLIM * (px * px + py * py + qx * qx + qy * qy)
+    for k in range(1 if slim else 2):
+        along, share = _ONE[0] if slim else _TWO[k]
         for panel in range(rest.panels):
             for out, weight in _FOUR:
                 u = (panel + out) / rest.panels
-                x, y = u * ex, u * ey
-                e = on_ray(ray, rest.degree, u) if rest.smooth else 0.0
-                for w in range(rest.near):
-                    kx, ky = swell[w, K_X], swell[w, K_Y]
-                    sine, cosine = bend(kx * x + ky * y, rest.doubled)
-                    e += swell[w, CREST] * cosine - swell[w, SLOPE] * sine
-                e_dA = u * weight * share / rest.panels * e
-                i0 += e_dA
-                ix += x * e_dA
-                iy += y * e_dA
-                iz += (height + gx * x + gy * y + 0.5 * e) * e_dA
-    whole = px * qy - py * qx
-    return whole * i0, whole * ix, whole * iy, whole * iz
+                near, far, part = u * (1.0 - along), u * along, u * weight * share / rest.panels
+                for n in range(count):
+                    cuts[_PLACE_X + n] = near * cuts[P_X + n] + far * cuts[Q_X + n]
+                    cuts[_PLACE_Y + n] = near * cuts[P_Y + n] + far * cuts[Q_Y + n]
+                    cuts[_REST + n] = 0.0
+                add_rest(x, y, count, rest, swell, flat, e, row, total)
+                for n in range(count):
+                    e_dA = part * cuts[_REST + n]
+                    mean = height + 0.5 * cuts[_REST + n]
+                    cuts[_ONES + n] += e_dA
+                    cuts[_ALONG + n] += cuts[_PLACE_X + n] * e_dA
+                    cuts[_ACROSS + n] += cuts[_PLACE_Y + n] * e_dA
+                    cuts[_UP + n] += (
+                        mean + gx * cuts[_PLACE_X + n] + gy * cuts[_PLACE_Y + n]
+                    ) * e_dA
+
+    # times the triangles
+    i0 = ix = iy = iz = 0.0
+    for n in range(count):
+        whole = cuts[P_X + n] * cuts[Q_Y + n] - cuts[P_Y + n] * cuts[Q_X + n]
+        i0 += whole * cuts[_ONES + n]
+        ix += whole * cuts[_ALONG + n]
+        iy += whole * cuts[_ACROSS + n]
+        iz += whole * cuts[_UP + n]
+    return i0, ix, iy, iz
