@@ -36,9 +36,7 @@ _FOUR = (
     (0.93056815579702629, 0.17392742256872692),
 )
 # columns of `cuts` behind the ends: places, the rest there, four integrals, and scratch
-_PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP, _ROW, _TOTAL = range(
-    4 * MOST, ROOM, MOST
-)
+_PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP, _ROW, _TOTAL = range(4 * MOST, ROOM, MOST)
 PANEL = 2.0
 """Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
 PANELS = 256
