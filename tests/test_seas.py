@@ -19,13 +19,15 @@ from buoyancy_mj import (
     Water,
     WaterError,
 )
-from buoyancy_mj.kernels import local, planning
+from buoyancy_mj.kernels import blocks, tiles
 from buoyancy_mj.kernels import waves as kernels
-from buoyancy_mj.kernels.hulls import LIMIT
+from buoyancy_mj.kernels.arrays import conform
+from buoyancy_mj.kernels.scratch import new_scratches
 from buoyancy_mj.meshes import shapes
 from buoyancy_mj.scenes.scene import scene_from_table
 from buoyancy_mj.settings.config import parse_plugin_config, write_plugin_config
 from buoyancy_mj.settings.settings import Settings
+from buoyancy_mj.submersion import sea_tiles
 from buoyancy_mj.submersion.exact import PackedHulls
 from buoyancy_mj.submersion.hull_set import HullSet
 from tests import naive, vessels
@@ -252,49 +254,66 @@ def test_many_points_at_once_are_summed_as_one_by_one():
 # many waves on hulls
 
 
-@pytest.mark.parametrize(
-    ("radius", "z", "depth"),
-    [
-        *[(*place, h) for place in ((0.3, 0.0), (0.3, -0.6), (2.5, -1.0)) for h in (math.inf, 3.0)],
-        (0.3, 0.0, 1.2),
-        (0.3, -0.6, 1.2),
-    ],
-)
-def test_the_polynomials_around_a_hull_keep_their_bound(radius, z, depth):
-    rows = Water(
-        waves=[
-            JonswapSea(0.6, 4.0, spreading=8.0, depth=depth),
-            RegularWave(0.1, period=9.0),
-            LevelOscillation(0.05, 0.2),
-        ]
-    ).rows
-    sea = np.empty(local.NEAR + local.WAVE * len(rows))
-    eta = naive.elevation(rows, 1.3, -2.0, 0.7)
-    local.gather(rows, 1.3, -2.0, z, eta, 0.7, radius, *planning.plan(rows, radius), True, sea)
-    # the most of the waves are in them
-    assert sea[local.COUNT] < len(rows) / 2
-    rng = np.random.default_rng(1)
-    room = np.full((local.ROOM, 200), np.nan)
-    away = rng.normal(size=(200, 3))
-    away *= radius * rng.random((200, 1)) ** (1 / 3) / np.linalg.norm(away, axis=1, keepdims=True)
-    room[:3] = away.T
-    room[2] += z
-    local.heads(sea, room, 200, 0.7, True)
-    for (x, y, height), head in zip(away + [1.3, -2.0, z], room[local.HEAD], strict=True):
-        eta = naive.elevation(rows, x, y, 0.7)
-        found, *slope = local.surface(sea, x, y, 0.7)
-        assert found == pytest.approx(eta, abs=planning.ACCURACY * radius)
-        step = 1e-4 * radius
-        along = naive.elevation(rows, x + step, y, 0.7) - naive.elevation(rows, x - step, y, 0.7)
-        across = naive.elevation(rows, x, y + step, 0.7) - naive.elevation(rows, x, y - step, 0.7)
-        # the last degree counts once more for each
-        assert slope == pytest.approx(
-            [along / (2 * step), across / (2 * step)], abs=planning.MOST * planning.ACCURACY
-        )
-        if height < eta:
-            assert head == pytest.approx(
-                kernels.head(rows, x, y, height, 0.7, True), abs=planning.ACCURACY * radius
-            )
+MIXED = [
+    lambda depth: JonswapSea(0.6, 4.0, spreading=8.0, depth=depth),
+    lambda depth: RegularWave(0.1, period=9.0, depth=depth),
+    lambda _: LevelOscillation(0.05, 0.2),
+]
+"""Waves in water of a depth."""
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.8, 5.0])
+def test_tiles_keep_their_bound(radius):
+    rows = Water(waves=[wave(math.inf) for wave in MIXED]).rows
+    sea = conform(sea_tiles.lay_tiles(rows, [3.0 * radius, radius]))
+    # most of the waves are in them
+    assert sea.layout[tiles.HELD] > len(rows) / 2
+    (scratch,) = new_scratches(1, 3, len(rows))
+    around = (*sea, *scratch.cut.store)
+    places = np.random.default_rng(1).uniform(-4.0, 4.0, (200, 2)) * radius
+    for x, y in places:
+        found, *slope = tiles.tangent_at(*around, x, y, 0.7)
+        eta, *exact = kernels.tangent(rows, x, y, 0.7)
+        assert found == pytest.approx(eta, abs=sea_tiles.ACCURACY * radius)
+        # the last degree counts once more for slopes
+        off = sea.layout[tiles.DEGREE] / sea.layout[tiles.REACH] * sea_tiles.ACCURACY * radius
+        assert slope == pytest.approx(exact, abs=off)
+
+    # and many at once find the same, near each other and far apart
+    for x, y in (places.T, (places[:9] * 1e-3).T):
+        out, room = np.zeros(len(x)), np.empty((2, len(x)))
+        tiles.add_elevations(*around, (0.3, -0.2), x, y, len(x), 0.7, *room, out)
+        one_by_one = [tiles.tangent_at(*around, 0.3 + a, b - 0.2, 0.7)[0] for a, b in zip(x, y)]
+        assert out == pytest.approx(one_by_one, abs=2 * sea_tiles.ACCURACY * radius)
+
+
+def test_a_tile_is_the_same_whoever_asks_for_it_first():
+    rows = Water(waves=SEAS[1]).rows
+    sea = conform(sea_tiles.lay_tiles(rows, [0.5]))
+    places = np.random.default_rng(2).uniform(-30.0, 30.0, (300, 2))
+    found = []
+    for order in (places, places[::-1]):
+        store = new_scratches(1, 3, len(rows))[0].cut.store
+        found.append([tiles.tangent_at(*sea, *store, x, y, 3.1) for x, y in order])
+    assert found[0] == found[1][::-1]
+
+
+@pytest.mark.parametrize("depth", [math.inf, 5.0, 1.2])
+def test_blocks_give_the_pressure_of_waves(depth):
+    rows = Water(waves=[wave(depth) for wave in MIXED]).rows
+    sea = conform(sea_tiles.lay_tiles(rows, [0.8]))
+    water = conform(sea_tiles.lay_blocks(rows, [0.8]))
+    store = new_scratches(1, 3, len(rows))[0].pressure.store
+    rng, off, heads = np.random.default_rng(1), [], []
+    for x, y, z in rng.uniform([-2.0, -2.0, -1.0], [2.0, 2.0, 0.3], (600, 3)):
+        if z < naive.elevation(rows, x, y, 0.7):
+            exact = kernels.head(rows, x, y, z, 0.7, True)
+            off.append(blocks.head_at(sea.waves, water, store, x, y, z, 0.7, True) - exact)
+            heads.append(exact + z)
+    # beside what waves add to still water, whose square makes up the most of what is left
+    assert np.std(off) < 6e-3 * np.std(heads)
+    assert abs(np.mean(off)) < 2e-3 * np.std(heads)
+    assert np.abs(off).max() < 1e-2 * 0.6
 
 
 @pytest.mark.parametrize("components", [4, 5, 64, 200])
@@ -316,7 +335,7 @@ def test_a_hull_in_a_sea_displaces_what_the_sum_over_small_triangles_says(compon
 
 @pytest.mark.parametrize("depth", [math.inf, 5.0, 0.8])
 def test_waves_gathered_and_waves_one_by_one_push_alike(depth):
-    # a hull of which the plan holds no wave in polynomials, and the same hull
+    # a hull around which tiles hold no wave, and the same hull
     waves = [
         RegularWave(0.01, period=3.0 + 0.02 * n, direction=0.3, phase=0.1 * n, depth=depth)
         for n in range(16)
@@ -326,7 +345,7 @@ def test_waves_gathered_and_waves_one_by_one_push_alike(depth):
     for z in (0.0, -0.3, -1.0):
         for time in (0.2, 0.9):
             rows = [PackedHulls(HullSet([mesh]), water) for _ in range(2)]
-            rows[0].hulls.whole[:, LIMIT] = -1.0
+            rows[0].hulls.tiles.layout[tiles.HELD] = 0.0
             a, b = (packed.submerge(np.array([[0.1, 0.2, z]]), turn, time)[0] for packed in rows)
             assert b[:5] == pytest.approx(a[:5], abs=1e-6)
             a, b = (

@@ -291,7 +291,7 @@ def exposure_of(model):
         Water(),
     ).hulls
     groups = group_welded_bodies(model, sorted({hull.body for hull in hulls}))
-    exposed = measure_exposure(packed, hulls, groups) * packed.areas[:, 3:]
+    exposed = measure_exposure(packed, hulls, groups) * packed.sizes[:, None]
     return exposed.reshape(len(hulls), -1, 2).sum(axis=1)
 
 

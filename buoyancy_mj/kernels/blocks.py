@@ -263,6 +263,16 @@ def _guess(z, eta, fall, depth):
     return below if below >= 0.0 else min(max(z - eta * left, -depth), 0.0)
 
 
+@njit(cache=True, error_model="numpy", inline="always")
+def head_at(sea, blocks, store, x, y, z, time, dynamic):
+    """The head at a place; see `fill` for the arguments."""
+    layout, found = blocks.layout, store.found
+    b, mx, my, mz = find_block(layout, found, x, y, z)
+    if not is_known(found, b, mx, my, mz, time):
+        fill(sea, blocks, store, b, mx, my, mz, time, dynamic)
+    return head_in(layout, found, b, x, y, z)
+
+
 @njit(cache=True, error_model="numpy")
 def head_in(layout, found, b, x, y, z):
     """The head of a block at a place."""

@@ -22,11 +22,13 @@ vertices stand still and the vertical leans.
 
 import math
 
-from numba import njit
+from numba import njit, uint64
 
 from buoyancy_mj.kernels import swell, tree
+from buoyancy_mj.kernels.cuts import MOST, add, nothing, subtract, sum_cuts
 from buoyancy_mj.kernels.hulls import (
-    AREA_OF_FACE,
+    ALLOWED,
+    EDGE,
     FILL,
     WHOLE_AREA,
     WHOLE_CENTROID,
@@ -34,8 +36,20 @@ from buoyancy_mj.kernels.hulls import (
     WHOLE_MIDDLE,
     WHOLE_VOLUME,
 )
+from buoyancy_mj.kernels.halving import split
+from buoyancy_mj.kernels.leaves import (
+    count_wet,
+    faces_of,
+    let_triangle_wait,
+    let_wait,
+    set_triangle,
+    sort_bent_faces,
+    sort_faces,
+    sum_faces,
+    sum_triangle,
+    vertices_of,
+)
 from buoyancy_mj.kernels.tiles import swing
-from buoyancy_mj.kernels.triangles import cut, moments
 from buoyancy_mj.kernels.vectors import difference, place, rotate, triple
 
 VOLUME, CX, CY, CZ, WETTED_AREA, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y, COLUMNS = range(9)
@@ -137,15 +151,23 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     """
     layout, sea = hulls.tiles.layout, hulls.tiles.waves
     found, phases, near = scratch.store.found, scratch.store.phases, scratch.swell
-    depths = scratch.depths[0]
-    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
+    vertices, faces, sizes = hulls.vertices, hulls.faces, hulls.sizes
     spans, boxes, node_moments = hulls.spans, hulls.boxes, hulls.moments
-    plane, rest = swell.approach(level, layout, sea, found, phases, origin, r, hulls.whole, h, time, near)
+    plane, rest = swell.approach(
+        level, layout, sea, found, phases, origin, r, hulls.whole, h, time, near
+    )
     wavy = rest.near > 0 or rest.smooth
 
-    # seven integrals over the wet side, four of e over the waterplane, and its moments
-    total, extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0)
-    ax = ay = 0.0
+    # what is seen of the vertices of a leaf; without waves the plane is the surface
+    x, y, d = scratch.seen[0], scratch.seen[1], scratch.seen[2]
+    w, row, polynomial = scratch.seen[3] if wavy else d, scratch.seen[4], scratch.seen[5]
+    most, others, crossed = scratch.sorted[0], scratch.sorted[1], scratch.sorted[2]
+    bent, stack, allowed = scratch.sorted[3], scratch.stack, hulls.whole[h, ALLOWED]
+    rough = wavy and 0.125 * curvature * hulls.whole[h, EDGE] ** 2 > allowed
+    cuts, waiting = scratch.cuts, 0
+
+    # integrals over wet nodes, over triangles, and of e over the waterplane
+    total, sums, extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), nothing(), (0.0, 0.0, 0.0, 0.0)
     i, end = hulls.nodes[h], hulls.nodes[h + 1]
     while i < end:
         middle, half = triple(boxes, i, tree.MIDDLE), triple(boxes, i, tree.HALF)
@@ -153,57 +175,127 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
         under = swell.depth_away(plane, away)
         depth, slope = under, plane.gradient
         if wavy:
-            e, bent = swell.over_node(rest, r, layout, sea, found, phases, near, away)
+            e, lean = swell.over_node(rest, r, layout, sea, found, phases, near, away)
             depth += e
-            slope = slope[0] + bent[0], slope[1] + bent[1], slope[2] + bent[2]
+            slope = slope[0] + lean[0], slope[1] + lean[1], slope[2] + lean[2]
         spread = tree.spread_in_box(half, slope, curvature)
         dry, wet = depth <= -spread, depth >= spread
-        if wet and not dry:
+        mostly = wet and not dry
+        if not dry and not wet and tree.is_leaf(spans, i):
+            # see its vertices, sort its triangles
+            base, count = vertices_of(spans, i)
+            swell.see(vertices, base, count, plane, r, x, y, d)
+            if wavy:
+                w[:count] = d[:count]
+                swell.add_rest(
+                    x, y, count, rest, layout, sea, found, phases, near, w, row, polynomial
+                )
+            first, behind = faces_of(spans, i)
+            if rough:
+                many, few, cut, halved = sort_bent_faces(
+                    faces, first, behind, base, x, y, w, curvature, allowed,
+                    most, others, crossed, bent,
+                )  # fmt: skip
+            else:
+                many, few, cut = sort_faces(faces, first, behind, base, w, most, others, crossed)
+                halved = uint64(0)
+
+            # those that are mostly wet, or all of them less the others
+            mostly = many > few
+            if mostly:
+                sums = subtract(sums, sum_faces(faces, sizes, base, others, few, x, y, d))
+            else:
+                sums = add(sums, sum_faces(faces, sizes, base, most, many, x, y, d))
+
+            # those that the surface cuts
+            for n in range(cut):
+                let_wait(cuts, waiting, crossed[n], faces, sizes, base, x, y, d, w)
+                waiting += 1
+                if waiting == MOST:
+                    sums, extra = _take(
+                        cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near
+                    )
+                    waiting = 0
+
+            # those that are to be halved, until what is left of them is wet, dry or cut
+            for n in range(halved):
+                set_triangle(stack, bent[n], faces, base, x, y, d, w)
+                size, top = sizes[bent[n]], 0
+                while top >= 0:
+                    more = split(
+                        stack, top, curvature, allowed, (layout, sea, found, phases),
+                        rest.place, rest.touch_all, time,
+                    )  # fmt: skip
+                    if more > top:
+                        top = more
+                        continue
+                    wet_corners = count_wet(stack, top)
+                    if wet_corners > 1:
+                        sums = add(sums, sum_triangle(stack, top, size))
+                    if wet_corners == 1 or wet_corners == 2:
+                        let_triangle_wait(cuts, waiting, stack, top, size)
+                        waiting += 1
+                        if waiting == MOST:
+                            sums, extra = _take(
+                                cuts, waiting, sums, extra, wavy, plane, rest,
+                                layout, sea, found, phases, near,
+                            )  # fmt: skip
+                            waiting = 0
+                    top -= 1
+        if mostly:
             part = _moments_of_node(node_moments[i], middle, r, under, plane.gradient)
             total = _sum(total, part)
-        elif not dry and tree.is_leaf(spans, i):
-            first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
-            swell.set_depths(vertices, first, last, plane, depths)
-            if wavy:
-                swell.add_rest(
-                    vertices, first, last, plane.middle, r, rest, layout, sea, found, phases, near, depths
-                )
-            for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
-                j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
-                w0, w1, w2 = depths[j - first], depths[k - first], depths[o - first]
-                if w0 <= 0.0 and w1 <= 0.0 and w2 <= 0.0:
-                    continue
-                a = r[6] * areas[f, 0] + r[7] * areas[f, 1] + r[8] * areas[f, 2]
-                p = _corner(triple(vertices, j, 0), w0, plane, wavy)
-                q = _corner(triple(vertices, k, 0), w1, plane, wavy)
-                s = _corner(triple(vertices, o, 0), w2, plane, wavy)
-                if w0 > 0.0 and w1 > 0.0 and w2 > 0.0:
-                    part, fraction = moments(a, p, q, s), 1.0
-                else:
-                    part, fraction, one, other = cut(a, p, q, s, w0, w1, w2)
-                    ends = swell.seen_from_above(plane, r, one, other)
-                    px, py, qx, qy = ends
-                    sixth = (px * qy - py * qx) / 6.0
-                    ax, ay = ax + sixth * (px + qx), ay + sixth * (py + qy)
-                    if wavy:
-                        more = swell.waterplane_moments(
-                            ends, plane.height, plane.slope, rest, layout, sea, found, phases, near
-                        )
-                        extra = _sum_four(extra, more)
-                total = _sum(total, (*part, fraction * a, fraction * areas[f, AREA_OF_FACE]))
         i = tree.node_after(spans, i, dry or wet)
 
-    # in the world's axes
-    v, lx, ly, lz, q, p, area = total
-    mx, my, mz = rotate(r, lx, ly, lz)
+    # the cuts that still wait
+    sums, extra = _take(
+        cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near
+    )
+    return _join(total, sums, extra, plane, r, hulls.whole[h, FILL])
+
+
+@njit(cache=True, error_model="numpy")
+def _take(cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near):
+    """Take the cuts that wait, into integrals over triangles, and of e over the waterplane."""
+    sums = add(sums, sum_cuts(cuts, waiting))
+    if wavy:
+        more = swell.waterplane_moments(
+            cuts, waiting, plane, rest, layout, sea, found, phases, near
+        )
+        extra = _sum_four(extra, more)
+    return sums, extra
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _join(total, sums, extra, plane, r, fill):
+    """What `_walk` returns, from what it has summed over nodes, triangles and waterplane.
+
+    Over nodes the sums are in the frame of the hull; all others are seen from above, from the
+    middle of the hull.
+    """
+    # of triangles, as those of nodes
+    v = fill * sums.volume
+    (gx, gy), half = plane.slope, 0.5 * fill * sums.square
+    mx, my, q = fill * sums.x, fill * sums.y, plane.height * v - half
+    mz = q + fill * (gx * sums.x + gy * sums.y)
+    p = fill * sums.above
+
+    # from the middle of the hull to its origin
     c0, c1, c2 = plane.middle
     cx, cy, _ = rotate(r, c0, c1, c2)
-    fill = hulls.whole[h, FILL]
+    nx, ny, nz = rotate(r, total[1], total[2], total[3])
     i0, ix, iy, iz = fill * extra[0], fill * extra[1], fill * extra[2], fill * extra[3]
+    whole, above = total[0] + v, total[5] + p
     return (
-        i0 - v, ix + cx * i0 - mx, iy + cy * i0 - my, iz - mz - 0.5 * q,
-        area, -p, fill * ax - cx * p, fill * ay - cy * p,
-    )  # fmt: skip
+        i0 - whole,
+        ix - mx - nx + cx * (i0 - v),
+        iy - my - ny + cy * (i0 - v),
+        iz - mz - nz - 0.5 * total[4],
+        total[6] + sums.area,
+        -above,
+        fill * sums.outline_x - cx * above,
+        fill * sums.outline_y - cy * above,
+    )
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -255,13 +347,3 @@ def _sum(a, b):
     return (
         a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5], a[6] + b[6],
     )  # fmt: skip
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _corner(vertex, depth, plane, wavy):
-    """A vertex as a corner of a triangle, with its depth under the plane.
-
-    Without waves that is the depth under the surface.
-    """
-    x, y, z = vertex
-    return x, y, z, swell.depth_under(plane, vertex) if wavy else depth

@@ -7,12 +7,11 @@ from buoyancy_mj.kernels.blocks import Blocks
 from buoyancy_mj.kernels.tiles import Tiles
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
-FILL, COLUMNS = 11, 12
+FILL, EDGE, ALLOWED, COLUMNS = 11, 12, 13, 14
 """Columns of `Hulls.whole`, and how many: volume that the whole hull displaces, its centroid (3), the
-area of its faces, middle (3) and half sides (3) of its bounding box, and the part of its volume that
-displaces water."""
-AREA_OF_FACE = 3
-"""Column of `Hulls.areas` behind the vector area (3)."""
+area of its faces, middle (3) and half sides (3) of its bounding box, the part of its volume that
+displaces water, its longest edge, and by how much a straight edge that lies in the surface may be
+off, see `halving` [m]."""
 
 
 class Hulls(NamedTuple):
@@ -22,8 +21,10 @@ class Hulls(NamedTuple):
     """Of all hulls [m]; leaf by leaf, so that leaves share none."""
     faces: Annotated[Corners, ("f", 3)]
     """Indices into the vertices, in the order of the leaves."""
-    areas: Annotated[Doubles, ("f", 4)]
-    """Vector area of each face, times the part of its hull that displaces, and its area [m^2]."""
+    areas: Annotated[Doubles, ("f", 3)]
+    """Vector area of each face, times the part of its hull that displaces [m^2]."""
+    sizes: Annotated[Doubles, ("f",)]
+    """Area of each face [m^2]."""
     nodes: Annotated[Words, ("h + 1",)]
     """First node of each hull, and the end of all."""
     spans: Annotated[Words, ("n", 5)]
@@ -33,7 +34,7 @@ class Hulls(NamedTuple):
     moments: Annotated[Doubles, ("n", 31)]
     """Moments of the vector area under each node, times the part that displaces; and the area."""
     whole: Annotated[Doubles, ("h", COLUMNS)]
-    """Each hull as a whole, in columns `WHOLE_VOLUME` to `FILL`."""
+    """Each hull as a whole, in columns `WHOLE_VOLUME` to `ALLOWED`."""
     typical: Annotated[Doubles, ("d",)]
     """Typical wave numbers of the sea by depth, see `pressure.typical` [rad/m]."""
     tiles: Tiles

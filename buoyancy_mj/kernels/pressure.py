@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.blocks import fill, find_block, is_known, quadratic_in
 from buoyancy_mj.kernels.expansions import add_node
-from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
+from buoyancy_mj.kernels.halving import CORNER, PART, split
+from buoyancy_mj.kernels.hulls import ALLOWED, EDGE, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, Setting, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.kernels.tiles import swing, tangent_at
-from buoyancy_mj.kernels.vectors import place, rotate, triple
+from buoyancy_mj.kernels.vectors import place, rotate, scale, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 
 SMALL = 0.3
@@ -97,11 +98,13 @@ def _walk(hulls, h, setting, r, curvature, scratch):
     typical, spans, boxes, moments = hulls.typical, hulls.spans, hulls.boxes, hulls.moments
     vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
     layout, waves, blocks = hulls.tiles.layout, hulls.tiles.waves, hulls.blocks
-    found, phases, depths = scratch.cut.store.found, scratch.cut.store.phases, scratch.cut.depths
+    found, phases, depths = scratch.cut.store.found, scratch.cut.store.phases, scratch.cut.seen
     store, points = scratch.pressure.store, scratch.pressure.points
     sums, turned = scratch.pressure.sums, scratch.pressure.turned
     known, sizes = store.found, blocks.layout
     time, dynamic = setting.time, setting.dynamic
+    stack, allowed = scratch.cut.stack, hulls.whole[h, ALLOWED]
+    rough = 0.125 * curvature * hulls.whole[h, EDGE] ** 2 > allowed
     # int64: a literal 0 would have all that it is given to compiled twice
     count = int64(0)
     i, end, wet_until = hulls.nodes[h], hulls.nodes[h + 1], int64(0)
@@ -152,7 +155,7 @@ def _walk(hulls, h, setting, r, curvature, scratch):
             for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
                 j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
                 dj, dk, do = depths[0, j - first], depths[0, k - first], depths[0, o - first]
-                if dj <= 0.0 and dk <= 0.0 and do <= 0.0:
+                if dj <= 0.0 and dk <= 0.0 and do <= 0.0 and not rough:
                     continue
                 if count > PLACES - TRIANGLE:
                     count = sum_points(waves, blocks, store, setting, points, count, sums)
@@ -160,7 +163,32 @@ def _walk(hulls, h, setting, r, curvature, scratch):
                 q = _corner(vertices, k, r, setting)
                 s = _corner(vertices, o, r, setting)
                 area = rotate(r, areas[f, 0], areas[f, 1], areas[f, 2])
-                count = add_wet_part(points, count, p, q, s, dj, dk, do, area, most, sums)
+                if not rough or wet:
+                    count = add_wet_part(points, count, p, q, s, dj, dk, do, area, most, sums)
+                    continue
+
+                # halved where the surface bends along its edges
+                _set_corner(stack, 0, p, dj)
+                _set_corner(stack, 1, q, dk)
+                _set_corner(stack, 2, s, do)
+                stack[0, PART] = 1.0
+                top = 0
+                while top >= 0:
+                    more = split(
+                        stack, top, curvature, allowed, (layout, waves, found, phases),
+                        (0.0, 0.0), (0.0, 0.0, 0.0), time,
+                    )  # fmt: skip
+                    if more > top:
+                        top = more
+                        continue
+                    dj, dk, do = stack[top, 3], stack[top, CORNER + 3], stack[top, 2 * CORNER + 3]
+                    if dj > 0.0 or dk > 0.0 or do > 0.0:
+                        if count > PLACES - TRIANGLE:
+                            count = sum_points(waves, blocks, store, setting, points, count, sums)
+                        p, q, s = _corner_of(stack, top, 0), _corner_of(stack, top, 1), _corner_of(stack, top, 2)
+                        part = scale(stack[top, PART], area)
+                        count = add_wet_part(points, count, p, q, s, dj, dk, do, part, most, sums)
+                    top -= 1
         i = tree.node_after(spans, i, dry or small)
     sum_points(waves, blocks, store, setting, points, count, sums)
 
@@ -170,3 +198,17 @@ def _corner(vertices, n, r, setting):
     """A vertex in the world, from the still level."""
     x, y, z = triple(vertices, n, 0)
     return place(setting.origin, r, x, y, z)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _set_corner(stack, corner, p, depth):
+    """Write a corner of the lowest triangle of a stack of `halving`; the plane is still water."""
+    i = CORNER * corner
+    stack[0, i], stack[0, i + 1], stack[0, i + 2], stack[0, i + 3] = p[0], p[1], -p[2], depth
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _corner_of(stack, row, corner):
+    """A corner of a triangle of a stack, from the still level."""
+    i = CORNER * corner
+    return stack[row, i], stack[row, i + 1], -stack[row, i + 2]

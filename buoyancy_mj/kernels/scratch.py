@@ -5,8 +5,8 @@ from typing import Annotated, NamedTuple, TypeVar
 
 import numpy as np
 
-from buoyancy_mj.kernels import swell
-from buoyancy_mj.kernels.arrays import Doubles, Field, Words, fields
+from buoyancy_mj.kernels import cuts, halving, swell
+from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, fields
 from buoyancy_mj.kernels.blocks import BlockStore
 from buoyancy_mj.kernels.quadrature import PLACES
 from buoyancy_mj.kernels.tiles import TileStore
@@ -17,8 +17,14 @@ T = TypeVar("T")
 class CutScratch(NamedTuple):
     """For `clip` and `waterplane`."""
 
-    depths: Annotated[Doubles, (1, "v")]
-    """Depths of the vertices of a leaf."""
+    seen: Annotated[Doubles, (6, "v")]
+    """The vertices of a leaf, seen from above, their depths, and what these are found by."""
+    sorted: Annotated[Corners, (4, "v")]
+    """The faces of a leaf, sorted by `leaves`."""
+    cuts: Annotated[Doubles, (cuts.ROOM,)]
+    """The triangles of `cuts`."""
+    stack: Annotated[Doubles, (halving.DEEP, halving.COLUMNS)]
+    """The triangles of `halving`."""
     swell: Annotated[Doubles, ("w", swell.COLUMNS)]
     """The near waves of `swell`."""
     store: TileStore

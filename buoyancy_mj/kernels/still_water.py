@@ -7,6 +7,8 @@ import math
 
 from numba import njit
 
+from buoyancy_mj.kernels.series import exponential
+
 LEAST_STRETCH = 0.5
 """Least part of its height to which a layer of water is squeezed: waves that break reach 0.55."""
 DEEP = 40.0
@@ -18,7 +20,10 @@ FLATTEST = 1.0 - 1e-12
 @njit(cache=True, error_model="numpy", inline="always")
 def seabed(k, depth):
     """What a wave feels of the bottom, e^(-2 k h); 0 where that is lost beside 1."""
-    return 0.0 if k == 0.0 or 2.0 * k * depth > DEEP else min(math.exp(-2.0 * k * depth), FLATTEST)
+    # not infinite, which times no wave number is none
+    twice = 2.0 * k * min(depth, 1e100)
+    felt = min(exponential(-twice), FLATTEST)
+    return 0.0 if k == 0.0 or twice > DEEP else felt
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -27,9 +32,7 @@ def fade(k, bottom, z):
 
     The pressure fades as the first times the last. The bottom is that of `seabed`.
     """
-    down = math.exp(k * z)
-    if bottom == 0.0:
-        return down, down, 1.0
+    down = exponential(k * z)
     echo, most = bottom / down, 1.0 - bottom
     return (down + echo) / most, (down - echo) / most, most / (1.0 + bottom)
 

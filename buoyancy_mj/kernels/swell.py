@@ -9,41 +9,50 @@ the near waves, which are taken one by one.
 import math
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels import tiles
+from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y, ROOM
 from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.series import bend, doublings
 from buoyancy_mj.kernels.tiles import (
     AMPLITUDE,
     KX,
     KY,
+    add_elevations,
     find_tile,
-    four_elevations,
     tangent_in,
 )
 from buoyancy_mj.kernels.vectors import place, rotate, triple
 
-CREST, SLOPE, K, K_WORLD, COLUMNS = 0, 1, 2, 5, 7
+CREST, SLOPE, K, K_X, K_Y, COLUMNS = 0, 1, 2, 5, 6, 7
 """Columns of a near wave, and how many: A cos and A sin of its phase over the middle, its wave
 vector in the hull's frame (3) and in the world's (2)."""
 
+# unsigned, as Numba indexes fastest
+_X, _Y, _Z = np.uint64(0), np.uint64(1), np.uint64(2)
 # Gauss-Legendre points and weights between 0 and 1
-_ONE = ((0.5, 1.0),)
 _TWO = ((0.5 - math.sqrt(1.0 / 12.0), 0.5), (0.5 + math.sqrt(1.0 / 12.0), 0.5))
+_THREE = (
+    (0.5 - math.sqrt(0.15), 5.0 / 18.0),
+    (0.5, 4.0 / 9.0),
+    (0.5 + math.sqrt(0.15), 5.0 / 18.0),
+)
 _FOUR = (
     (0.06943184420297371, 0.17392742256872692),
     (0.33000947820757187, 0.32607257743127308),
     (0.66999052179242813, 0.32607257743127308),
     (0.93056815579702629, 0.17392742256872692),
 )
+# columns of `cuts` behind the ends: places, the rest there, four integrals, and scratch
+_PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP, _ROW, _TOTAL = range(4 * MOST, ROOM, MOST)
 PANEL = 2.0
 """Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
 PANELS = 256
 """Most of them: no ripple is resolved that is shorter than a hundredth of the hull."""
-SLIM = 1e-3
-"""Square of the ends' distance, over that of their distances from the middle, for which one point
-along a cut is enough."""
+SHORT = 0.5
+"""Longest angle [rad] over which three points outward are enough, to 1e-6 of the amplitude."""
 
 
 class Plane(NamedTuple):
@@ -75,12 +84,16 @@ class Rest(NamedTuple):
     """Whether tiles hold any wave."""
     doubled: int
     """How often angles between near waves and hull are halved, see `series.bend`."""
-    turning: float
-    """Wave number that says how finely a way is divided into panels [rad/m]."""
+    panels: int
+    """Into how many panels the way from the middle to a cut is divided."""
+    points: int
+    """How many points each of them has."""
     place: tuple[float, float]
     """Of the middle of the hull along x and y of the world [m]."""
     touch: tuple[float, float, float]
     """Elevation of the tiles over the middle, and its gradient along x and y."""
+    touch_all: tuple[float, float, float]
+    """The same of all waves."""
     time: float
     """[s]."""
 
@@ -94,7 +107,12 @@ def approach(level, layout, waves, found, phases, origin, r, whole, h, time, nea
     """
     c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
     x, y, _ = place(origin, r, c0, c1, c2)
-    touch, (eta, s0, s1, s2), count, change = _gather(layout, waves, found, phases, x, y, r, whole, h, time, near)
+    e0, e1, e2 = triple(whole, h, WHOLE_HALF)
+    radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
+    touch, (eta, s0, s1, s2), count, steepest = _gather(
+        layout, waves, found, phases, x, y, r, time, near
+    )
+    change = steepest * radius
 
     # the plane, as the depth under it: d + g (x - c)
     g0, g1, g2 = s0 - r[6], s1 - r[7], s2 - r[8]
@@ -105,17 +123,19 @@ def approach(level, layout, waves, found, phases, origin, r, whole, h, time, nea
     plane = Plane((c0, c1, c2), d, still, (g0, g1, g2), height, (gx, gy))
 
     # the rest
-    smooth, turning = int(layout[tiles.HELD]) > 0, layout[tiles.TURNING]
-    return plane, Rest(count, smooth, doublings(change), turning, (x, y), touch, time)
+    smooth, turn = int(layout[tiles.HELD]) > 0, layout[tiles.TURNING] * radius
+    panels, points = min(max(1, math.ceil(turn / PANEL)), PANELS), 3 if turn <= SHORT else 4
+    return plane, Rest(
+        count, smooth, doublings(change), panels, points, (x, y), touch, (eta, gx, gy), time
+    )
 
 
 @njit(cache=True, error_model="numpy")
-def _gather(layout, waves, found, phases, x, y, r, whole, h, time, near):
+def _gather(layout, waves, found, phases, x, y, r, time, near):
     """Bring the near waves to a hull, and find the plane over its middle.
 
     Returns the elevation of the tiles there, with its gradient in the world; that of all waves, with
-    its gradient in the hull's frame; how many waves are near; and by how much the phase of any of
-    them changes over the hull.
+    its gradient in the hull's frame; how many waves are near; and their largest wave number.
     """
     eta = gx = gy = g0 = g1 = g2 = steepest = 0.0
     held, count = int(layout[tiles.HELD]), waves.shape[1]
@@ -132,15 +152,13 @@ def _gather(layout, waves, found, phases, x, y, r, whole, h, time, near):
         n = w - held
         near[n, CREST], near[n, SLOPE] = crest, slope
         near[n, K], near[n, K + 1], near[n, K + 2] = k0, k1, k2
-        near[n, K_WORLD], near[n, K_WORLD + 1] = kx, ky
+        near[n, K_X], near[n, K_Y] = kx, ky
         eta += crest
         g0 -= slope * k0
         g1 -= slope * k1
         g2 -= slope * k2
     g0, g1, g2 = g0 + gx * r[0] + gy * r[3], g1 + gx * r[1] + gy * r[4], g2 + gx * r[2] + gy * r[5]
-    e0, e1, e2 = triple(whole, h, WHOLE_HALF)
-    radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-    return touch, (eta, g0, g1, g2), count - held, steepest * radius
+    return touch, (eta, g0, g1, g2), count - held, steepest
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -184,138 +202,97 @@ def depth_away(plane, away):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def set_depths(vertices, first, last, plane, depths):
-    """Write the depths under the plane of vertices from `first` up to `last`."""
-    for n in range(first, last):
-        depths[n - first] = depth_under(plane, triple(vertices, n, 0))
+def see(vertices, first, count, plane, r, x, y, d):
+    """See vertices from `first` on, from above, from the middle of the hull.
 
-
-@njit(cache=True, error_model="numpy")
-def add_rest(vertices, first, last, middle, r, rest, layout, waves, found, phases, near, depths):
-    """Add the rest to depths under the plane, of vertices from `first` up to `last`."""
-    c0, c1, c2 = middle
-    if rest.smooth:
-        n = first
-        while n < last:
-            # four at once, the last ones more than once
-            i, j, k = min(n + 1, last - 1), min(n + 2, last - 1), min(n + 3, last - 1)
-            a = _seen(vertices, n, c0, c1, c2, r)
-            b = _seen(vertices, i, c0, c1, c2, r)
-            c = _seen(vertices, j, c0, c1, c2, r)
-            d = _seen(vertices, k, c0, c1, c2, r)
-            e = _four_rests(rest, layout, waves, found, phases, a, b, c, d)
-            depths[n - first] += e[0]
-            if n + 1 < last:
-                depths[i - first] += e[1]
-            if n + 2 < last:
-                depths[j - first] += e[2]
-            if n + 3 < last:
-                depths[k - first] += e[3]
-            n += 4
-    for w in range(rest.near):
-        crest, slope = near[w, CREST], near[w, SLOPE]
-        k0, k1, k2 = triple(near, w, K)
-        shift = k0 * c0 + k1 * c1 + k2 * c2
-        for n in range(first, last):
-            angle = k0 * vertices[n, 0] + k1 * vertices[n, 1] + k2 * vertices[n, 2] - shift
-            sine, cosine = bend(angle, rest.doubled)
-            depths[n - first] += crest * cosine - slope * sine
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _seen(vertices, n, c0, c1, c2, r):
-    """A vertex seen from above, from the middle of the hull."""
-    x, y, _ = rotate(r, vertices[n, 0] - c0, vertices[n, 1] - c1, vertices[n, 2] - c2)
-    return x, y
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _four_rests(rest, layout, waves, found, phases, a, b, c, d):
-    """What tiles have beside the plane at four places, from the middle of the hull."""
-    (x, y), (eta, gx, gy) = rest.place, rest.touch
-    e0, e1, e2, e3 = four_elevations(
-        layout, waves, found, phases,
-        (x + a[0], x + b[0], x + c[0], x + d[0]), (y + a[1], y + b[1], y + c[1], y + d[1]),
-        rest.time,
-    )  # fmt: skip
-    return (
-        e0 - (eta + gx * a[0] + gy * a[1]),
-        e1 - (eta + gx * b[0] + gy * b[1]),
-        e2 - (eta + gx * c[0] + gy * c[1]),
-        e3 - (eta + gx * d[0] + gy * d[1]),
-    )
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def seen_from_above(plane, r, p, q):
-    """Two points of the hull's frame, seen from above, from the middle of the hull.
-
-    Their coordinates are along x and y of the world.
+    Their places along x and y of the world, and their depths under the plane, are written.
     """
     c0, c1, c2 = plane.middle
-    px, py, _ = rotate(r, p[0] - c0, p[1] - c1, p[2] - c2)
-    qx, qy, _ = rotate(r, q[0] - c0, q[1] - c1, q[2] - c2)
-    return px, py, qx, qy
+    g0, g1, g2 = plane.gradient
+    cx, cy, _ = rotate(r, c0, c1, c2)
+    r0, r1, r2, r3, r4, r5 = r[0], r[1], r[2], r[3], r[4], r[5]
+    for n in range(count):
+        p0, p1, p2 = vertices[first + n, _X], vertices[first + n, _Y], vertices[first + n, _Z]
+        x[n] = r0 * p0 + r1 * p1 + r2 * p2 - cx
+        y[n] = r3 * p0 + r4 * p1 + r5 * p2 - cy
+        d[n] = plane.origin_depth + (g0 * p0 + g1 * p1 + g2 * p2)
 
 
 @njit(cache=True, error_model="numpy")
-def waterplane_moments(ends, height, slope, rest, layout, waves, found, phases, near):
-    """Integrals of e, x e, y e and (plane + e / 2) e over a triangle of the waterplane.
+def add_rest(x, y, count, rest, layout, waves, found, phases, near, out, row, total):
+    """Add the rest e at places seen from the middle of the hull to `out`.
 
-    Its corners are the middle of the hull and the `ends` of a cut. The plane has the `height` over
-    the middle, and the `slope`. All is seen from above. By Gauss outward, in panels of at most
-    `PANEL` / k, and along the cut.
+    `row` and `total` are scratch.
     """
-    px, py, qx, qy = ends
-    gx, gy = slope
-    i0 = ix = iy = iz = 0.0
-    p, q = px * px + py * py, qx * qx + qy * qy
-    slim = (qx - px) * (qx - px) + (qy - py) * (qy - py) <= SLIM * (p + q)
-    panels = min(max(1, math.ceil(rest.turning * math.sqrt(max(p, q)) / PANEL)), PANELS)
-    for n in range(1 if slim else 2):
-        along, share = _ONE[0] if slim else _TWO[n]
-        ex, ey = px + along * (qx - px), py + along * (qy - py)
-        for panel in range(panels):
-            u = _outward(panel, panels)
-            e = _along_ray(ex, ey, u, rest, layout, waves, found, phases, near)
-            for i in range(4):
-                x, y = u[i] * ex, u[i] * ey
-                e_dA = u[i] * _FOUR[i][1] * share / panels * e[i]
-                i0 += e_dA
-                ix += x * e_dA
-                iy += y * e_dA
-                iz += (height + gx * x + gy * y + 0.5 * e[i]) * e_dA
-    whole = px * qy - py * qx
-    return whole * i0, whole * ix, whole * iy, whole * iz
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _outward(panel, panels):
-    """The four points of a panel, as parts of the way from the middle."""
-    return (
-        (panel + _FOUR[0][0]) / panels,
-        (panel + _FOUR[1][0]) / panels,
-        (panel + _FOUR[2][0]) / panels,
-        (panel + _FOUR[3][0]) / panels,
-    )
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _along_ray(x, y, u, rest, layout, waves, found, phases, near):
-    """The rest at four parts u of the way from the middle of the hull to a place."""
-    e0 = e1 = e2 = e3 = 0.0
     if rest.smooth:
-        a, b, c, d = (
-            (u[0] * x, u[0] * y), (u[1] * x, u[1] * y), (u[2] * x, u[2] * y), (u[3] * x, u[3] * y),
-        )  # fmt: skip
-        e0, e1, e2, e3 = _four_rests(rest, layout, waves, found, phases, a, b, c, d)
-    for w in range(rest.near):
-        angle = near[w, K_WORLD] * x + near[w, K_WORLD + 1] * y
-        crest, slope = near[w, CREST], near[w, SLOPE]
-        s0, c0 = bend(u[0] * angle, rest.doubled)
-        s1, c1 = bend(u[1] * angle, rest.doubled)
-        s2, c2 = bend(u[2] * angle, rest.doubled)
-        s3, c3 = bend(u[3] * angle, rest.doubled)
-        e0, e1 = e0 + crest * c0 - slope * s0, e1 + crest * c1 - slope * s1
-        e2, e3 = e2 + crest * c2 - slope * s2, e3 + crest * c3 - slope * s3
-    return e0, e1, e2, e3
+        eta, gx, gy = rest.touch
+        for n in range(count):
+            out[n] -= eta + gx * x[n] + gy * y[n]
+        add_elevations(
+            layout, waves, found, phases, rest.place, x, y, count, rest.time, row, total, out
+        )
+    # each with a literal, so that the processor takes several places at once
+    for i in range(rest.near):
+        if rest.doubled == 0:
+            _add_wave(x, y, count, near, i, 0, out)
+        elif rest.doubled == 1:
+            _add_wave(x, y, count, near, i, 1, out)
+        elif rest.doubled == 2:
+            _add_wave(x, y, count, near, i, 2, out)
+        else:
+            _add_wave(x, y, count, near, i, 3, out)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _add_wave(x, y, count, swell, i, doubled, out):
+    """Add the near wave i, less its plane, at places seen from the middle of the hull."""
+    crest, slope, kx, ky = swell[i, CREST], swell[i, SLOPE], swell[i, K_X], swell[i, K_Y]
+    for n in range(count):
+        sine, cosine = bend(kx * x[n] + ky * y[n], doubled)
+        out[n] += crest * cosine - slope * sine
+
+
+@njit(cache=True, error_model="numpy")
+def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, near):
+    """Integrals of e, x e, y e and (plane + e / 2) e over triangles of the waterplane.
+
+    The corners of each are the middle of the hull and the ends of one of `cuts`. All is seen from
+    above. By Gauss outward, in panels of at most `PANEL` / k, and along the cuts.
+    """
+    height, (gx, gy) = plane.height, plane.slope
+    x, y, e = cuts[_PLACE_X : _PLACE_X + MOST], cuts[_PLACE_Y:_REST], cuts[_REST:_ONES]
+    row, total = cuts[_ROW:_TOTAL], cuts[_TOTAL : _TOTAL + MOST]
+    for n in range(count):
+        cuts[_ONES + n] = cuts[_ALONG + n] = cuts[_ACROSS + n] = cuts[_UP + n] = 0.0
+    for along, share in _TWO:
+        for panel in range(rest.panels):
+            for k in range(rest.points):
+                out, weight = _THREE[k] if rest.points == 3 else _FOUR[k]
+                u = (panel + out) / rest.panels
+                to_p, to_q, part = u * (1.0 - along), u * along, u * weight * share / rest.panels
+                for n in range(count):
+                    cuts[_PLACE_X + n] = to_p * cuts[P_X + n] + to_q * cuts[Q_X + n]
+                    cuts[_PLACE_Y + n] = to_p * cuts[P_Y + n] + to_q * cuts[Q_Y + n]
+                    cuts[_REST + n] = 0.0
+                add_rest(
+                    x, y, count, rest, layout, waves, found, phases, near, e, row, total
+                )
+                for n in range(count):
+                    e_dA = part * cuts[_REST + n]
+                    mean = height + 0.5 * cuts[_REST + n]
+                    cuts[_ONES + n] += e_dA
+                    cuts[_ALONG + n] += cuts[_PLACE_X + n] * e_dA
+                    cuts[_ACROSS + n] += cuts[_PLACE_Y + n] * e_dA
+                    cuts[_UP + n] += (
+                        mean + gx * cuts[_PLACE_X + n] + gy * cuts[_PLACE_Y + n]
+                    ) * e_dA
+
+    # times the triangles
+    i0 = ix = iy = iz = 0.0
+    for n in range(count):
+        whole = cuts[P_X + n] * cuts[Q_Y + n] - cuts[P_Y + n] * cuts[Q_X + n]
+        i0 += whole * cuts[_ONES + n]
+        ix += whole * cuts[_ALONG + n]
+        iy += whole * cuts[_ACROSS + n]
+        iz += whole * cuts[_UP + n]
+    return i0, ix, iy, iz

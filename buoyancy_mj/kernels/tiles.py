@@ -218,6 +218,55 @@ def four_elevations(layout, waves, found, phases, xs, ys, time):
 
 
 @njit(cache=True, error_model="numpy")
+def add_elevations(layout, waves, found, phases, place, x, y, count, time, row, total, out):
+    """Add the elevations of tiles at `count` places x, y from a place to `out`.
+
+    Where all are near the first, its tile answers for all at once, else four by four. `row` and
+    `total` are scratch.
+    """
+    if count == 0:
+        return
+    x0, y0 = place
+    t = find_tile(layout, waves, found, phases, x0 + x[0], y0 + y[0], time)
+    mx, my, scale = found[t, MIDDLE_X] - x0, found[t, MIDDLE_Y] - y0, layout[PER_REACH]
+    far = 0.0
+    for n in range(count):
+        far = max(far, max(abs(x[n] - mx), abs(y[n] - my)))
+    if far <= layout[REACH]:
+        i, degree = FLAT + size(int(layout[DEGREE])), int(layout[DEGREE])
+        for n in range(count):
+            total[n] = 0.0
+        for m in range(degree, -1, -1):
+            for n in range(count):
+                row[n] = 0.0
+            for _ in range(degree - m + 1):
+                i -= 1
+                c = found[t, i]
+                for n in range(count):
+                    row[n] = row[n] * ((y[n] - my) * scale) + c
+            for n in range(count):
+                total[n] = total[n] * ((x[n] - mx) * scale) + row[n]
+        for n in range(count):
+            out[n] += total[n]
+        return
+    n = 0
+    while n < count:
+        # the last ones more than once
+        i, j, k = min(n + 1, count - 1), min(n + 2, count - 1), min(n + 3, count - 1)
+        xs = (x0 + x[n], x0 + x[i], x0 + x[j], x0 + x[k])
+        ys = (y0 + y[n], y0 + y[i], y0 + y[j], y0 + y[k])
+        e = four_elevations(layout, waves, found, phases, xs, ys, time)
+        out[n] += e[0]
+        if n + 1 < count:
+            out[i] += e[1]
+        if n + 2 < count:
+            out[j] += e[2]
+        if n + 3 < count:
+            out[k] += e[3]
+        n += 4
+
+
+@njit(cache=True, error_model="numpy")
 def tangent_at(layout, waves, found, phases, x, y, time):
     """The elevation of all waves at a place, and its gradient."""
     held = int(layout[HELD])

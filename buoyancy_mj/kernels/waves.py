@@ -1,5 +1,8 @@
 """Airy waves as rows of numbers: elevation, pressure, orbital velocity and acceleration at a place.
 
+Sums over the waves are written without branches and may be taken in any order, so that the
+processor takes several waves at once.
+
 A row with kx = ky = 0 is the whole level going up and down, the limit of an infinitely long wave.
 """
 
@@ -7,6 +10,7 @@ import math
 
 from numba import njit
 
+from buoyancy_mj.kernels.series import turn
 from buoyancy_mj.kernels.still_water import (
     LEAST_STRETCH,
     calm,
@@ -18,6 +22,9 @@ from buoyancy_mj.kernels.still_water import (
     still_height,
 )
 from buoyancy_mj.kernels.vectors import triple
+
+ANY_ORDER = {"reassoc", "contract"}
+"""What the compiler may do with sums over the waves."""
 
 AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH, SIGMA = range(7)
 """Columns of a row: amplitude [m], wave vector (2) [rad/m], angular frequency at a fixed place
@@ -31,58 +38,30 @@ def phase_at(waves, w, x, y, time):
     return waves[w, KX] * x + waves[w, KY] * y - waves[w, OMEGA] * time + waves[w, PHASE]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
 def elevation(waves, x, y, time):
     """Sum of the rows' elevations [m] above the still level at one horizontal point."""
     total = 0.0
     for i in range(waves.shape[0]):
-        total += waves[i, AMPLITUDE] * math.cos(phase_at(waves, i, x, y, time))
+        cosine, _ = turn(phase_at(waves, i, x, y, time))
+        total += waves[i, AMPLITUDE] * cosine
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
 def tangent(waves, x, y, time):
     """Elevation over the still level at a place, and its gradient."""
     eta = along = across = 0.0
     for i in range(waves.shape[0]):
-        angle = phase_at(waves, i, x, y, time)
-        slope = waves[i, AMPLITUDE] * math.sin(angle)
-        eta += waves[i, AMPLITUDE] * math.cos(angle)
+        cosine, sine = turn(phase_at(waves, i, x, y, time))
+        slope = waves[i, AMPLITUDE] * sine
+        eta += waves[i, AMPLITUDE] * cosine
         along -= waves[i, KX] * slope
         across -= waves[i, KY] * slope
     return eta, along, across
 
 
-@njit(cache=True, error_model="numpy")
-def swing(waves, x, y, time, radius):
-    """Elevation at a place, and bounds within a radius: how much it differs, and is curved."""
-    eta = along = across = height = steepness = curvature = twist = hxx = hxy = hyy = 0.0
-    for i in range(waves.shape[0]):
-        a, kx, ky = triple(waves, i, AMPLITUDE)
-        angle = phase_at(waves, i, x, y, time)
-        crest, slope = a * math.cos(angle), a * math.sin(angle)
-        eta += crest
-        along -= kx * slope
-        across -= ky * slope
-        hxx -= crest * kx * kx
-        hxy -= crest * kx * ky
-        hyy -= crest * ky * ky
-
-        # bounds that hold everywhere
-        k = math.sqrt(kx * kx + ky * ky)
-        a = abs(a)
-        height += a
-        steepness += a * k
-        curvature += a * k * k
-        twist += a * k * k * k
-
-    # the values at the place, and by how much they can differ elsewhere
-    curvature = min(curvature, math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + twist * radius)
-    steepness = min(steepness, math.hypot(along, across) + curvature * radius)
-    return eta, min(2.0 * height, steepness * radius), curvature
-
-
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
 def head(waves, x, y, z, time, dynamic):
     """Pressure over rho g [m] at height z over the still level.
 
@@ -101,30 +80,33 @@ def head(waves, x, y, z, time, dynamic):
     still = still_height(z, eta, fall, depth)
     rise = strain = rest = rest_strain = mean = whole = tide = 0.0
     for i in range(waves.shape[0]):
-        a = waves[i, AMPLITUDE] * math.cos(phase_at(waves, i, x, y, time))
-        k = math.hypot(waves[i, KX], waves[i, KY])
+        cosine, _ = turn(phase_at(waves, i, x, y, time))
+        a = waves[i, AMPLITUDE] * cosine
+        k = math.sqrt(waves[i, KX] * waves[i, KX] + waves[i, KY] * waves[i, KY])
         wide, narrow, tanh = fade(k, seabed(k, waves[i, DEPTH]), still)
         rise += a * narrow
         strain += a * k * wide
         rest += a * (wide * tanh - narrow)
         rest_strain += a * k * (narrow * tanh - wide)
-        square = 0.5 * waves[i, AMPLITUDE] ** 2 * k * tanh
+        square = 0.5 * waves[i, AMPLITUDE] * waves[i, AMPLITUDE] * k * tanh
         mean += square * narrow * narrow
         whole += square
         tide += a if k == 0.0 else 0.0
     return settle(z, still, rise, strain, rest, rest_strain, tide, mean, whole)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
 def survey(waves, x, y, time):
     """Elevation at a place, how fast the waves fade with depth [1/m], and the water's depth [m]."""
     eta = weighted = energy = 0.0
     depth = math.inf
     for i in range(waves.shape[0]):
         amplitude, kx, ky = triple(waves, i, AMPLITUDE)
-        eta += amplitude * math.cos(phase_at(waves, i, x, y, time))
+        cosine, _ = turn(phase_at(waves, i, x, y, time))
+        eta += amplitude * cosine
         energy += amplitude * amplitude
         weighted += amplitude * amplitude * math.sqrt(kx * kx + ky * ky)
+    for i in range(waves.shape[0]):
         depth = min(depth, waves[i, DEPTH])
     return eta, decay(weighted / energy if energy > 0.0 else 0.0, depth), depth
 
@@ -161,7 +143,7 @@ def add_motion(waves, x, y, z, time, velocity, acceleration):
     acceleration[2] += dw
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
 def _motion(waves, x, y, z, time):
     """The waves' velocity (3) and acceleration (3) at a place."""
     eta, fall, depth = survey(waves, x, y, time)
@@ -175,11 +157,14 @@ def _motion(waves, x, y, z, time):
     mean = whole = mean_z = drift_x = drift_y = 0.0
     for i in range(waves.shape[0]):
         amplitude, kx, ky = triple(waves, i, AMPLITUDE)
-        sigma, angle = waves[i, SIGMA], phase_at(waves, i, x, y, time)
-        crest, slope = amplitude * math.cos(angle), amplitude * math.sin(angle)
+        sigma = waves[i, SIGMA]
+        cosine, sine = turn(phase_at(waves, i, x, y, time))
+        crest, slope = amplitude * cosine, amplitude * sine
         k = math.sqrt(kx * kx + ky * ky)
         wide, narrow, _ = fade(k, seabed(k, waves[i, DEPTH]), still)
-        bx, by = (kx / k, ky / k) if k > 0.0 else (0.0, 0.0)
+        # of all the water that rises, nothing goes aside
+        per_k = 1.0 / k if k > 0.0 else 0.0
+        bx, by = kx * per_k, ky * per_k
 
         # along the wave, and upright
         ahead, ahead_z = sigma * crest * wide, sigma * crest * k * narrow
@@ -196,10 +181,8 @@ def _motion(waves, x, y, z, time):
         across -= ky * slope * narrow
 
         # the square of the upright velocity at all times; of all the water that rises there is none
-        if k == 0.0:
-            tide += crest
-            continue
-        speed = amplitude * sigma
+        tide += crest if k == 0.0 else 0.0
+        speed = amplitude * sigma if k > 0.0 else 0.0
         whole += speed * speed
         mean += speed * speed * narrow * narrow
         mean_z += speed * speed * k * wide * narrow

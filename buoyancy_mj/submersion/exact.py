@@ -84,14 +84,17 @@ class PackedHulls:
         meshes, fills = hulls.meshes, hulls.fills
         self._sea = sea_arrays(water)
         check_waves(max(0.5 * float(np.linalg.norm(m.extents)) for m in meshes), self._sea.waves)
-        edges = find_longest_edges(meshes, hulls.bodies, water, tolerance)
+        edges, allowed = find_longest_edges(meshes, hulls.bodies, water, tolerance)
         trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
-        self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, self._sea.waves))
+        self.hulls: Hulls = conform(
+            _hulls(meshes, trees, fills, hulls.frames, self._sea.waves, allowed)
+        )
         """The hulls as kernels read them."""
         spans = self.hulls.spans
-        leaves = spans[:, tree.BEHIND] == np.arange(len(spans)) + 1
-        vertices = spans[:, tree.END_VERTEX] - spans[:, tree.FIRST_VERTEX]
-        self._most = int(vertices[leaves].max())
+        leaves = spans[spans[:, tree.BEHIND] == np.arange(len(spans)) + 1]
+        faces = leaves[:, tree.END_FACE] - leaves[:, tree.FIRST_FACE]
+        vertices = leaves[:, tree.END_VERTEX] - leaves[:, tree.FIRST_VERTEX]
+        self._most = int(max(faces.max(), vertices.max()))
         (self.scratch,) = self.new_scratches(1)
         """Where `submerge` and `press` work."""
         self.volumes = self.hulls.whole[:, WHOLE_VOLUME].copy()
@@ -160,7 +163,7 @@ class PackedHulls:
             Geoms(positions, rotations),
             about,
             self._sea.level,
-            self.scratch.cut.depths[0],
+            self.scratch.cut.seen[0],
             rows,
         )
         return rows
@@ -179,8 +182,12 @@ def _hulls(
     fills: NDArray[np.float64],
     frames: NDArray[np.int64],
     waves: NDArray[np.float64],
+    allowed: Sequence[float],
 ) -> Hulls:
-    """Meshes and their trees, joined, for waves (w, 7); see `PackedHulls` for the arguments."""
+    """Meshes and their trees, joined, for waves (w, 7); see `PackedHulls` for the arguments.
+
+    Straight edges that lie in the surface may be off by so much [m], as is allowed for each hull.
+    """
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
     first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
     first_node = np.cumsum([0, *(len(t.spans) for t in trees)])
@@ -203,12 +210,13 @@ def _hulls(
     return Hulls(
         vertices,
         faces,
-        np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)]),
+        shares * vectors,
+        np.linalg.norm(vectors, axis=1),
         first_node,
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
-        np.array([_whole(mesh, fill) for mesh, fill in zip(meshes, fills, strict=True)]),
+        np.array([_whole(*each) for each in zip(meshes, trees, fills, allowed, strict=True)]),
         pressure.typical(waves),
         lay_tiles(waves, radii),
         lay_blocks(waves, radii),
@@ -216,11 +224,14 @@ def _hulls(
     )
 
 
-def _whole(mesh: TriMesh, fill: float) -> list[float]:
+def _whole(mesh: TriMesh, tree: Tree, fill: float, allowed: float) -> list[float]:
     """One row of `Hulls.whole`."""
-    half = 0.5 * mesh.extents
-    middle = mesh.bounds.mean(axis=0)
-    return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill]
+    half, middle = 0.5 * mesh.extents, mesh.bounds.mean(axis=0)
+    corners = tree.vertices[tree.faces]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
+    return [
+        fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, longest, allowed,
+    ]  # fmt: skip
 
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:

@@ -5,6 +5,7 @@ in a module beside the others; `pack` returns an object as `Packed` asks. One mo
 `METHODS` makes it known to scenes, the plugin and the command line.
 """
 
+import functools
 from collections.abc import Mapping
 from typing import Protocol
 
@@ -89,10 +90,16 @@ def parse_method(method: str | Method) -> Method:
     if isinstance(method, str):
         if method not in METHODS:
             raise MethodError(f"unknown method {describe(method)}; {choices(method, METHODS)}")
-        return METHODS[method]()
+        return _with_defaults(method)
     if isinstance(method, type) or not hasattr(method, "pack"):
         raise MethodError(
             f"{describe(method)} is no method; possible are {', '.join(METHODS)}, "
             "or one of them with options"
         )
     return method
+
+
+@functools.cache
+def _with_defaults(name: str) -> Method:
+    """The method of a name, made once: `submerge` asks for it in each call."""
+    return METHODS[name]()

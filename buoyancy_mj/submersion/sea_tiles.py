@@ -59,10 +59,20 @@ def lay_tiles(waves: NDArray[np.float64], radii: Sequence[float]) -> Tiles:
     layout[[tiles.SIDE, tiles.REACH, tiles.HELD, tiles.DEGREE]] = OVERLAP * reach, reach, held, degree
     layout[tiles.HEIGHT : tiles.TWIST + 1] = [(amplitudes * k**n).sum() for n in range(4)]
     if amplitudes.any():
-        layout[tiles.TURNING] = ((amplitudes * k**8).sum() / amplitudes.sum()) ** (1 / 8)
+        layout[tiles.TURNING] = mean_wave_number(amplitudes, k)
     if held:
         layout[tiles.ROUNDING] = allowed * (degree / reach) ** 2
     return Tiles(layout, np.concatenate([rows, shares]))
+
+
+def mean_wave_number(amplitudes: NDArray[np.float64], k: NDArray[np.float64]) -> float:
+    """The wave number [rad/m] of one wave that is as steep in its eighth derivatives as all waves.
+
+    Args:
+        amplitudes: of the waves (w,), not all 0 [m].
+        k: their wave numbers (w,) [rad/m].
+    """
+    return float((amplitudes @ k**8 / amplitudes.sum()) ** (1 / 8))
 
 
 def _order(waves: NDArray[np.float64]) -> NDArray[np.intp]:

@@ -11,10 +11,12 @@ from buoyancy_mj.errors import BuoyancyWarning, WaterError
 from buoyancy_mj.kernels import swell, tiles
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.submersion.sea_tiles import lay_tiles
+from buoyancy_mj.submersion.sea_tiles import lay_tiles, mean_wave_number
 
 MOST_TRIANGLES = 200_000
-"""Most triangles to which a mesh is refined for the waves."""
+"""Most triangles to which a mesh is refined for the waves, about."""
+GENTLE = 0.5
+"""Longest edge of a mesh in waves, times their wave number, see `sea_tiles.mean_wave_number`."""
 MOST_TURNS = swell.PANEL * swell.PANELS
 """Greatest change of a wave's phase from the middle of a hull to its corner [rad].
 
@@ -55,22 +57,41 @@ def check_waves(radius: float, waves: NDArray[np.float64]) -> None:
 
 def find_longest_edges(
     meshes: Sequence[TriMesh], bodies: NDArray[np.int64], water: Water, tolerance: float
-) -> list[float]:
-    """Find the longest edge [m] of each mesh that follows the waves, see `_longest_edge`.
+) -> tuple[list[float], list[float]]:
+    """Find the longest edge of each mesh, and how far off a straight edge in the surface may be.
 
-    It goes by the volume and the area of all meshes of the same body.
+    A chord of length e under a curve of curvature c is off by c e^2 / 12 on average. That matters
+    only where the surface cuts triangles. No more than half the hull's area faces up or down
+    (Cauchy's mean projected area). If all of that lay in the water's surface, the volume would be
+    off by less than c e^2 / 12 times half the area, which must stay below the tolerance times the
+    volume of all hulls of the body. Edges that are longer than this allows are halved where it
+    matters, see `kernels.halving`; up to `GENTLE` over the wave number that is left to each pass.
+
+    Args:
+        meshes: of the hulls.
+        bodies: the body of each (h,).
+        water: the sea.
+        tolerance: see `Exact.tolerance`.
+
+    Returns:
+        For each hull, both [m].
     """
     volumes = np.array([mesh.volume for mesh in meshes])
     areas = np.array([mesh.area for mesh in meshes])
-    edges, worst = [], tolerance
+    amplitudes, k = np.abs(water.rows[:, 0]), np.hypot(*water.rows[:, 1:3].T)
+    gentle = GENTLE / mean_wave_number(amplitudes, k) if k.any() else math.inf
+    edges, allowed, worst = [], [], tolerance
     for body in bodies:
         volume, area = volumes[bodies == body].sum(), areas[bodies == body].sum()
-        edge = _longest_edge(volume, area, water, tolerance)
-        edges.append(edge)
-        if math.isfinite(edge):
-            worst = max(worst, edge**2 * area * water.curvature / (24.0 * volume))
-
-    # where the triangles would be too many
+        off = 3.0 * tolerance * volume / area
+        fine = math.sqrt(8.0 * off / water.curvature) if water.curvature else math.inf
+        # no hull is refined beyond so many triangles, nor are these halved
+        least = math.sqrt(4.0 * area / MOST_TRIANGLES)
+        if least > max(fine, gentle):
+            off = max(off, water.curvature * least**2 / 8.0)
+            worst = max(worst, off * area / (3.0 * volume))
+        edges.append(max(fine, gentle, least))
+        allowed.append(off)
     if worst > 1.001 * tolerance:
         warnings.warn(
             f"the waves are so steep and short that {MOST_TRIANGLES:,} triangles keep the volume "
@@ -79,25 +100,4 @@ def find_longest_edges(
             BuoyancyWarning,
             stacklevel=5,
         )
-    return edges
-
-
-def _longest_edge(volume: float, area: float, water: Water, tolerance: float) -> float:
-    """Longest edge [m] of triangles that follow the waves well enough.
-
-    A chord of length e under a curve of curvature c is off by c e^2 / 12 on average. That matters
-    only where the surface cuts triangles. No more than half the hull's area faces up or down
-    (Cauchy's mean projected area). If all of that lay in the water's surface, the volume would be
-    off by less than c e^2 / 12 times half the area, which must stay below the tolerance times the
-    volume. No hull is refined beyond about `MOST_TRIANGLES`.
-
-    Args:
-        volume: volume of the body's hulls [m^3].
-        area: surface area of the body's hulls [m^2].
-        water: the sea.
-        tolerance: see `Exact.tolerance`.
-    """
-    if water.curvature == 0.0:
-        return math.inf
-    fine = np.sqrt(24.0 * tolerance * volume / (area * water.curvature))
-    return float(max(fine, np.sqrt(4.0 * area / MOST_TRIANGLES)))
+    return edges, allowed
