@@ -27,8 +27,12 @@ vector in the hull's frame (3) and in the world's (2)."""
 # unsigned, as Numba indexes fastest
 _X, _Y, _Z = np.uint64(0), np.uint64(1), np.uint64(2)
 # Gauss-Legendre points and weights between 0 and 1
-_ONE = ((0.5, 1.0),)
 _TWO = ((0.5 - math.sqrt(1.0 / 12.0), 0.5), (0.5 + math.sqrt(1.0 / 12.0), 0.5))
+_THREE = (
+    (0.5 - math.sqrt(0.15), 5.0 / 18.0),
+    (0.5, 4.0 / 9.0),
+    (0.5 + math.sqrt(0.15), 5.0 / 18.0),
+)
 _FOUR = (
     (0.06943184420297371, 0.17392742256872692),
     (0.33000947820757187, 0.32607257743127308),
@@ -41,9 +45,8 @@ PANEL = 2.0
 """Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
 PANELS = 256
 """Most of them: no ripple is resolved that is shorter than a hundredth of the hull."""
-SLIM = 1e-3
-"""Square of the ends' distance, over that of their distances from the middle, for which one point
-along a cut is enough."""
+SHORT = 0.5
+"""Longest angle [rad] over which three points outward are enough, to 1e-6 of the amplitude."""
 
 
 class Plane(NamedTuple):
@@ -79,6 +82,8 @@ class Rest(NamedTuple):
     """How often angles between waves and hull are halved, see `series.bend`."""
     panels: int
     """Into how many panels the way from the middle to a cut is divided."""
+    points: int
+    """How many points each of them has."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -102,7 +107,8 @@ def approach(level, waves, origin, r, whole, h, time, swell, flat):
     panels = min(max(1, math.ceil(change / PANEL)), PANELS)
     smooth = near < waves.shape[0]
     degree = int(whole[h, DEGREE])
-    return plane, Rest(near, degree, smooth, doublings(change), panels)
+    points = 3 if change <= SHORT else 4
+    return plane, Rest(near, degree, smooth, doublings(change), panels, points)
 
 
 @njit(cache=True, error_model="numpy")
@@ -217,16 +223,12 @@ def waterplane_moments(cuts, count, plane, rest, swell, flat):
     height, (gx, gy) = plane.height, plane.slope
     x, y, e = cuts[_PLACE_X : _PLACE_X + MOST], cuts[_PLACE_Y:_REST], cuts[_REST:_ONES]
     row, total = cuts[_ROW:_TOTAL], cuts[_TOTAL : _TOTAL + MOST]
-    slim = True
     for n in range(count):
         cuts[_ONES + n] = cuts[_ALONG + n] = cuts[_ACROSS + n] = cuts[_UP + n] = 0.0
-        px, py, qx, qy = cuts[P_X + n], cuts[P_Y + n], cuts[Q_X + n], cuts[Q_Y + n]
-        apart = (qx - px) * (qx - px) + (qy - py) * (qy - py)
-        slim = slim and apart <= SLIM * (px * px + py * py + qx * qx + qy * qy)
-    for k in range(1 if slim else 2):
-        along, share = _ONE[0] if slim else _TWO[k]
+    for along, share in _TWO:
         for panel in range(rest.panels):
-            for out, weight in _FOUR:
+            for k in range(rest.points):
+                out, weight = _THREE[k] if rest.points == 3 else _FOUR[k]
                 u = (panel + out) / rest.panels
                 near, far, part = u * (1.0 - along), u * along, u * weight * share / rest.panels
                 for n in range(count):
