@@ -3,7 +3,7 @@ from pathlib import Path
 
 import numba
 
-from buoyancy_mj.kernels import _drop_stale, clip
+from buoyancy_mj.kernels import _drop_stale, triangles
 from buoyancy_mj.kernels.caches import list_caches
 
 
@@ -35,9 +35,9 @@ def test_compiled_kernels_that_cannot_be_read_go(tmp_path, monkeypatch):
 def test_compiled_kernels_are_known_where_numba_keeps_them(tmp_path, monkeypatch):
     def keeps() -> Path:
         """Where Numba keeps a kernel that it meets now."""
-        return Path(numba.njit(cache=True)(clip.cut.py_func)._cache.cache_path)
+        return Path(numba.njit(cache=True)(triangles.cut.py_func)._cache.cache_path)
 
-    source = Path(clip.__file__)
+    source = Path(triangles.__file__)
     assert keeps() in list_caches(source)
     monkeypatch.setattr(numba.config, "CACHE_DIR", str(tmp_path))
     assert keeps().parent == tmp_path

@@ -16,8 +16,11 @@ summed:
 with d the depth under the plane, p its height, and the last integrals over the waterplane, whose
 outline is where the triangles are cut. The waterplane's own area is - int n_z dA over the wet side,
 and its centroid is summed along the outline, over the triangles from the middle of the hull to each
-cut. All of it is summed in the frame of the hull, where the
-vertices stand still and the vertical leans.
+cut.
+
+Nodes are summed in the frame of the hull, where their moments stand still and the vertical leans.
+Triangles at the surface are seen from above, from the middle of the hull, see `leaves` and `cuts`:
+there x, y and d say all of a corner, since z is the height of the plane less d.
 """
 
 import math
