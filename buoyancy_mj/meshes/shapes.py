@@ -3,9 +3,13 @@
 A faceted solid inscribed in a round one is too small. The vertices are moved outward by what the
 facets around them lack, and the whole has the volume of the true shape. At any attitude in which at
 least a twentieth is in the water, and a twentieth out of it, the volume under water is then wrong
-by less than 0.05 % of the whole, and draft and centre of buoyancy by less than 0.1 % of the longest
-side. The waterplane's area is wrong by 0.1 % and its moments by 0.3 % (root mean square); in the
-worst attitude of a short capsule by 0.6 % and 1.2 %, of the other shapes by 0.2 % and 0.5 %.
+by less than 0.05 % of the whole, and the height at which it floats and the centre of buoyancy by
+less than 0.1 % of the longest side. The waterplane's area is wrong by 0.1 % and its moments by
+0.3 % (root mean square); in the worst attitude of a short capsule by 0.6 % and 1.2 %, of the other
+shapes by 0.2 % and 0.5 %.
+
+Vertices stand out of the true shape by up to 1 % of the radius of a capsule and 0.3 % of that of
+a sphere. The poles of a capsule, and the vertices of a sphere on its axes, do not.
 """
 
 import functools
@@ -87,7 +91,10 @@ class _Ring(NamedTuple):
 def _unit_ball() -> TriMesh:
     """A sphere of radius 1."""
     ball = trimesh.creation.icosphere(subdivisions=SUBDIVISIONS)
-    vertices = ball.vertices * (1.0 + _find_lack(ball.vertices, ball.faces))[:, None]
+    lack = _find_lack(ball.vertices, ball.faces)
+    # those on the axes stay, so that it is as long, as wide and as tall as it should be
+    lack[np.abs(ball.vertices).max(axis=1) > 1.0 - 1e-9] = 0.0
+    vertices = ball.vertices * (1.0 + lack)[:, None]
     scale = np.cbrt(4.0 / 3.0 * np.pi / TriMesh(vertices, ball.faces).volume)
     return TriMesh(vertices * scale, ball.faces)
 
