@@ -338,3 +338,38 @@ def wet_disc(depth, axis, radius, slopes, cells=2000):
     angles = 2.0 * np.pi * places[None, ::10]
     points = [radii * (np.cos(angles) * one[k] + np.sin(angles) * two[k]) for k in range(3)]
     return float(np.mean(depth + slopes[0] * points[0] + slopes[1] * points[1] - points[2] > 0.0))
+
+
+def panel_drag(corners, velocity, spin, centre, *, leading, trailing, friction, density):
+    """Force and torque about a centre on triangles (n, 3, 3) that still water at z = 0 wets.
+
+    `velocity` is that of the centre, all in the world's axes.
+    """
+    force, torque = np.zeros(3), np.zeros(3)
+    for triangle in corners:
+        # what is wet of it, from the areas of the polygon under the surface
+        wet, following = [], np.roll(triangle, -1, axis=0)
+        for p, q in zip(triangle, following, strict=True):
+            if p[2] < 0.0:
+                wet.append(p)
+            if (p[2] < 0.0) != (q[2] < 0.0):
+                wet.append(p + p[2] / (p[2] - q[2]) * (q - p))
+        if not wet:
+            continue
+        fan = [np.cross(b - wet[0], c - wet[0]) / 2.0 for b, c in itertools.pairwise(wet[1:])]
+        area = np.linalg.norm(np.sum(fan, axis=0))
+        a, b, c = triangle
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal)
+
+        # pressure along the normal, and friction along the face
+        arm = triangle.mean(axis=0) - centre
+        u = velocity + np.cross(spin, arm)
+        into = u @ normal
+        along = u - into * normal
+        coefficient = leading if into > 0.0 else trailing
+        push = -coefficient * abs(into) * into * normal
+        push -= friction * np.linalg.norm(along) * along
+        force += 0.5 * density * area * push
+        torque += np.cross(arm, 0.5 * density * area * push)
+    return np.concatenate([force, torque])

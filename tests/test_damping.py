@@ -16,7 +16,8 @@ from buoyancy_mj import (
     Silhouette,
     Water,
 )
-from tests.naive import roll
+from buoyancy_mj.meshes import shapes
+from tests.naive import panel_drag, roll
 
 LINEAR = np.array(
     [
@@ -204,6 +205,34 @@ def drag_of(geom, velocity, **options):
         .evaluate(data)
         .by_cause["drag"][1]
     )
+
+
+@pytest.mark.parametrize("depth", [2.0, 0.05, -0.03])
+def test_panels_are_as_one_by_one_on_a_hull_that_turns_in_the_surface(depth):
+    model = of({}, '<geom type="capsule" size=".2 .3" mass="24"/>', pos=f"0 0 {-depth}")
+    data = moving(model, np.array([0.5, -0.3, 0.2, 0.4, -0.7, 0.6]))
+    data.qpos[2] = -depth
+    mujoco.mj_forward(model, data)
+    buoyancy = Buoyancy(model, Water(density=1025.0), damping=Damping(viscous=Panels()))
+    found = buoyancy.evaluate(data)
+
+    # friction by the speed at the middle of what is wet
+    turn, origin, centre = data.geom_xmat[0].reshape(3, 3), data.geom_xpos[0], data.xipos[1]
+    mesh, spin = shapes.capsule(0.2, 0.3), data.cvel[1, :3]
+    velocity = data.cvel[1, 3:] + np.cross(spin, centre - data.subtree_com[1])
+    length = np.ptp(mesh.vertices, axis=0).max()
+    friction = 0.075 / (math.log10(np.linalg.norm(velocity) * length / 1.19e-6) - 2.0) ** 2
+    one_by_one = panel_drag(
+        mesh.vertices[mesh.faces] @ turn.T + origin,
+        velocity,
+        spin,
+        centre,
+        leading=1.05 * 2.0 / 3.0,
+        trailing=1.05 / 3.0,
+        friction=friction,
+        density=1025.0,
+    )
+    assert found.by_cause["drag"][1] == pytest.approx(one_by_one, rel=1e-9, abs=1e-9)
 
 
 def test_a_plate_across_the_flow_has_the_coefficient_of_a_flat_face():

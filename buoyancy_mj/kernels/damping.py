@@ -75,9 +75,8 @@ class DampingArrays(NamedTuple):
     """Which of the welded groups each belongs to; -1 for none."""
     welded: WeldedGroups
     """The groups. While all its welds act, a group has the drag of one body, not of its members."""
-    exposed: Annotated[Doubles, ("f", 2)]
-    """Part of each face that meets water, not another hull of its body (0) or of its group (1); no
-    rows if no body has drag by panels."""
+    faces: Annotated[Doubles, (8, "f")]
+    """The faces of all hulls as `facets` takes them; none if no body has drag by panels."""
 
     @property
     def radiates(self) -> bool:

@@ -9,6 +9,7 @@ from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.clip import CX, CZ, VOLUME
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.damping import holds, relative_velocity
+from buoyancy_mj.kernels.facets import AREAS, BLOCK, PUSHES, add_push, total
 from buoyancy_mj.kernels.hulls import WHOLE_MIDDLE
 from buoyancy_mj.kernels.rigid import (
     find_inertias,
@@ -18,14 +19,14 @@ from buoyancy_mj.kernels.rigid import (
     share,
 )
 from buoyancy_mj.kernels.triangles import lone_corner, turn
-from buoyancy_mj.kernels.vectors import place, rotate, triple
+from buoyancy_mj.kernels.vectors import difference, place, rotate, rotate_back, triple
 from buoyancy_mj.kernels.waves import add_velocity, tangent
 
 LEADING, TRAILING, LENGTH, VISCOSITY, DENSITY = range(5)
 """Columns of `DampingArrays.panels`: drag coefficients of faces that lead and that trail, length of
 the body [m], kinematic viscosity [m^2/s], and density [kg/m^3], 0 for a body without panels."""
 ALONE, TOGETHER = np.int64(0), np.int64(1)
-"""Columns of `DampingArrays.exposed`: of a body by itself, and of what welds hold together."""
+"""Whose other hulls cover a face: those of a body by itself, or of all that welds hold together."""
 LEAST_REYNOLDS = 1e4
 """Below it the line of the ITTC is taken no further: flow there is not turbulent."""
 
@@ -112,6 +113,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
     if not damping.panels[n, DENSITY] > 0.0:
         return fastest
     water, v, b = np.zeros(3), np.empty(6), damping.bodies[n]
+    sums = np.empty((PUSHES, BLOCK))
     relative_velocity(bodies, b, bodies.xipos[b], water, v)
     velocity = rotate(bodies.xmat[b], v[0], v[1], v[2])
 
@@ -132,7 +134,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
         friction = 0.075 / (math.log10(max(reynolds, LEAST_REYNOLDS)) - 2.0) ** 2
         _add_hull(
             damping.panels[n],
-            damping.exposed,
+            damping.faces,
             company,
             hulls,
             h,
@@ -144,6 +146,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
             water,
             velocity,
             friction,
+            sums,
             f,
         )
     return fastest
@@ -151,56 +154,94 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add_hull(
-    panels, exposed, company, hulls, h, bodies, b, geoms, sea, time, water, velocity, friction, f
+    panels,
+    faces,
+    company,
+    hulls,
+    h,
+    bodies,
+    b,
+    geoms,
+    sea,
+    time,
+    water,
+    velocity,
+    friction,
+    sums,
+    f,
 ):
     """Add force and torque on the wet triangles of a hull to `f` (6,).
 
     The torque is about the centre of mass of the body.
     """
+    # the plane that touches the surface, and the flow, in the frame of the hull
     origin, r = geoms.geom_xpos[hulls.frames[h]], geoms.geom_xmat[hulls.frames[h]]
-    at, spin, node = bodies.xipos[b], bodies.cvel[b], hulls.nodes[h]
-    c0, c1, c2 = triple(hulls.whole, h, WHOLE_MIDDLE)
-    x, y, _ = place(origin, r, c0, c1, c2)
+    middle = triple(hulls.whole, h, WHOLE_MIDDLE)
+    x, y, z = place(origin, r, middle[0], middle[1], middle[2])
     eta, gx, gy = tangent(sea.waves, x, y, time)
-    vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
-    for t in range(hulls.spans[node, tree.FIRST_FACE], hulls.spans[node, tree.END_FACE]):
-        # what of the triangle is wet
-        px, py, pz = _corner(vertices, faces, t, 0, origin, r)
-        qx, qy, qz = _corner(vertices, faces, t, 1, origin, r)
-        ox, oy, oz = _corner(vertices, faces, t, 2, origin, r)
-        dp = sea.level + eta + gx * (px - x) + gy * (py - y) - pz
-        dq = sea.level + eta + gx * (qx - x) + gy * (qy - y) - qz
-        do = sea.level + eta + gx * (ox - x) + gy * (oy - y) - oz
-        part = _wet_share(dp, dq, do) * exposed[t, company]
-        nx, ny, nz = rotate(r, areas[t, 0], areas[t, 1], areas[t, 2])
-        size = math.sqrt(nx * nx + ny * ny + nz * nz)
-        if part == 0.0 or size == 0.0:
-            continue
+    plane = sea.level + eta - z, middle, rotate_back(r, gx, gy, -1.0)
+    arm, spin = difference(origin, bodies.xipos[b]), bodies.cvel[b]
+    ux = velocity[0] + spin[1] * arm[2] - spin[2] * arm[1] - water[0]
+    uy = velocity[1] + spin[2] * arm[0] - spin[0] * arm[2] - water[1]
+    uz = velocity[2] + spin[0] * arm[1] - spin[1] * arm[0] - water[2]
+    flow = rotate_back(r, ux, uy, uz), rotate_back(r, spin[0], spin[1], spin[2])
 
-        # the flow past its middle, along the normal and along the face
-        nx, ny, nz = nx / size, ny / size, nz / size
-        cx = (px + qx + ox) / 3.0 - at[0]
-        cy = (py + qy + oy) / 3.0 - at[1]
-        cz = (pz + qz + oz) / 3.0 - at[2]
-        wx, wy, wz = spin[0], spin[1], spin[2]
-        ux = velocity[0] + wy * cz - wz * cy - water[0]
-        uy = velocity[1] + wz * cx - wx * cz - water[1]
-        uz = velocity[2] + wx * cy - wy * cx - water[2]
-        into = ux * nx + uy * ny + uz * nz
-        tx, ty, tz = ux - into * nx, uy - into * ny, uz - into * nz
+    # the sum over the triangles, about the origin of the hull
+    coefficients = panels[LEADING], panels[TRAILING], friction
+    sums[:] = 0.0
+    _walk(hulls, h, faces, AREAS + company, plane, flow, coefficients, sums)
+    fx, fy, fz, tx, ty, tz = total(sums)
 
-        # friction, and pressure
-        wet_half = 0.5 * panels[DENSITY] * size * part
-        along = wet_half * friction * math.sqrt(tx * tx + ty * ty + tz * tz)
-        coefficient = panels[LEADING] if into > 0.0 else panels[TRAILING]
-        square = wet_half * coefficient * abs(into) * into
-        fx, fy, fz = -along * tx - square * nx, -along * ty - square * ny, -along * tz - square * nz
-        f[0] += fx
-        f[1] += fy
-        f[2] += fz
-        f[3] = f[3] + cy * fz - cz * fy
-        f[4] = f[4] + cz * fx - cx * fz
-        f[5] = f[5] + cx * fy - cy * fx
+    # in the world, about the centre of mass
+    half = 0.5 * panels[DENSITY]
+    fx, fy, fz = rotate(r, half * fx, half * fy, half * fz)
+    tx, ty, tz = rotate(r, half * tx, half * ty, half * tz)
+    f[0] += fx
+    f[1] += fy
+    f[2] += fz
+    f[3] += tx + arm[1] * fz - arm[2] * fy
+    f[4] += ty + arm[2] * fx - arm[0] * fz
+    f[5] += tz + arm[0] * fy - arm[1] * fx
+
+
+@njit(cache=True, error_model="numpy")
+def _walk(hulls, h, faces, row, plane, flow, coefficients, sums):
+    """Add the push on all wet faces of a hull to `sums`, by its tree.
+
+    The corners of triangles are looked at where the plane cuts them, and nowhere else.
+    """
+    vertices, corners, spans, boxes = hulls.vertices, hulls.faces, hulls.spans, hulls.boxes
+    wet_areas = np.empty(BLOCK)
+    under, middle, slope = plane
+    i, end = hulls.nodes[h], hulls.nodes[h + 1]
+    while i < end:
+        away = difference(triple(boxes, i, tree.MIDDLE), middle)
+        depth = under + slope[0] * away[0] + slope[1] * away[1] + slope[2] * away[2]
+        spread = tree.spread_in_box(triple(boxes, i, tree.HALF), slope, 0.0)
+        dry, wet = depth <= -spread, depth >= spread
+        first, last = spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]
+        if wet and not dry:
+            for start in range(first, last, BLOCK):
+                stop = min(start + BLOCK, last)
+                add_push(faces, start, stop, faces[row, start:stop], flow, coefficients, sums)
+        elif not dry and tree.is_leaf(spans, i):
+            for start in range(first, last, BLOCK):
+                stop = min(start + BLOCK, last)
+                for t in range(start, stop):
+                    p = _depth(vertices, corners[t, 0], plane)
+                    q = _depth(vertices, corners[t, 1], plane)
+                    o = _depth(vertices, corners[t, 2], plane)
+                    wet_areas[t - start] = _wet_share(p, q, o) * faces[row, t]
+                add_push(faces, start, stop, wet_areas[: stop - start], flow, coefficients, sums)
+        i = tree.node_after(spans, i, dry or wet)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _depth(vertices, n, plane):
+    """Depth of a vertex under a plane."""
+    under, middle, slope = plane
+    x, y, z = difference(triple(vertices, n, 0), middle)
+    return under + slope[0] * x + slope[1] * y + slope[2] * z
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -218,13 +259,6 @@ def _held(mass, inertias, timestep, fastest, wx, wy, wz, f):
     if least > 0.0 and mass > 0.0:
         change = (push / mass + twist / least) / (rate * rate)
     return math.sqrt(motion / change) if change > motion else 1.0
-
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _corner(vertices, faces, t, k, origin, r):
-    """Corner k of a triangle, in the world."""
-    x, y, z = triple(vertices, faces[t, k], 0)
-    return place(origin, r, x, y, z)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

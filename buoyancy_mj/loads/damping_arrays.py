@@ -17,10 +17,11 @@ from buoyancy_mj.hulls.hull import Hull, combine_volumes, group_by_body
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.hulls.welds import WeldedGroup, group_welded_bodies
 from buoyancy_mj.kernels.damping import DampingArrays, WeldedGroups
+from buoyancy_mj.kernels.facets import FACE_ROWS
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.panels import LENGTH
 from buoyancy_mj.loads.damping import Damping, Panels, Silhouette
-from buoyancy_mj.loads.exposure import measure_exposure
+from buoyancy_mj.loads.exposure import gather_faces, measure_exposure
 from buoyancy_mj.loads.matrices import check_eigenvalues
 from buoyancy_mj.loads.silhouettes import Silhouettes, estimate_drag, measure_silhouettes
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -95,9 +96,9 @@ def resolve_damping(
     radiation = _resolve_radiation(damping, model, shapes)
     viscous, groups, of_groups = _resolve_viscous(damping, model, shapes, density)
     panels = np.stack([drag.panels for drag in viscous])
-    exposed = np.zeros((0, 2))
+    faces = np.zeros((FACE_ROWS, 0))
     if panels.any() and packed is not None:
-        exposed = measure_exposure(packed, hulls, groups)
+        faces = gather_faces(packed, measure_exposure(packed, hulls, groups))
     group_of = {body: i for i, group in enumerate(groups) for body in group.places}
     return DampingArrays(
         bodies=np.array(bodies),
@@ -115,7 +116,7 @@ def resolve_damping(
         member_starts=np.cumsum([0, *(len(group) for group in members)]),
         group=np.array([group_of.get(body, -1) for body in bodies]),
         welded=_arrange_groups(groups, bodies, of_groups),
-        exposed=exposed,
+        faces=faces,
     )
 
 

@@ -23,7 +23,7 @@ _POINTS = 4
 def measure_exposure(
     packed: Hulls, hulls: Sequence[Hull], groups: Sequence[WeldedGroup]
 ) -> NDArray[np.float64]:
-    """The part of each face that meets water (f, 2), see `DampingArrays.exposed`.
+    """The part of each face that meets water (f, 2), alone and together, see `kernels.panels`.
 
     A face is looked at in points, so the part of one that is covered in part is an estimate.
 
@@ -49,6 +49,21 @@ def measure_exposure(
                 exposed[shape.faces_of, ALONE] = shape.exposure(alone)
                 exposed[shape.faces_of, TOGETHER] = shape.exposure(others)
     return exposed
+
+
+def gather_faces(packed: Hulls, exposed: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The faces of all hulls (8, f) as `kernels.facets` takes them.
+
+    Args:
+        packed: the hulls as kernels read them.
+        exposed: the part of each face that meets water (f, 2), see `measure_exposure`.
+    """
+    # of what displaces in part, faces count in part
+    vectors = packed.areas[:, :3]
+    areas = np.linalg.norm(vectors, axis=1)
+    middles = packed.vertices[packed.faces].mean(axis=1)
+    normals = vectors / np.where(areas > 0.0, areas, 1.0)[:, None]
+    return np.vstack([middles.T, normals.T, areas * exposed.T])
 
 
 class _Shape:
