@@ -15,8 +15,10 @@ _LOADED = time.time()
 """When this process has read the sources, at the latest."""
 SOURCES = (
     "errors.py",
+    "files.py",
     "hulls/hull.py",
     "hulls/overlaps.py",
+    "kernels/processor.py",
     "kernels/rays.py",
     "kernels/tree.py",
     "loads/silhouettes.py",

@@ -118,6 +118,7 @@ class TriMesh:
         a, b, c = self.corners
         sums = (a - middle) + (b - middle) + (c - middle)
         centroid: NDArray[np.float64] = middle + self._tetrahedra @ sums / (4.0 * self.volume)
+        centroid.setflags(write=False)
         return centroid
 
     @cached_property
