@@ -244,6 +244,7 @@ def test_the_version_covers_all_the_code_that_finds_what_is_kept():
     for root in (
         "meshes.repair",
         "meshes.shapes",
+        "meshes.convex",
         "hulls.overlaps",
         "loads.silhouettes",
         "meshes.tree",

@@ -33,7 +33,9 @@ _PRIMITIVES: Mapping[int, Callable[[NDArray[np.float64]], TriMesh]] = {
     _CAPSULE: lambda size: shapes.capsule(size[0], size[1]),
 }
 """What builds the mesh of a geom from its `geom_size`, by the type of the geom."""
-_MESHES = Form("primitive", TriMesh.to_arrays, TriMesh.from_arrays)
+_BUILT, _CONVEX = (
+    Form(name, TriMesh.to_arrays, TriMesh.from_arrays) for name in ("primitive", "convex hull")
+)
 
 
 def find_hulls(
@@ -191,7 +193,7 @@ def _build_mesh(
         elif convex:
             arrays = read_geom_mesh(model, geom)
             assert arrays is not None
-            meshes[key] = convex_hull(arrays[0], describe_mesh(model, geom, geoms))
+            meshes[key] = _wrap(arrays[0], describe_mesh(model, geom, geoms))
         else:
             meshes[key] = _repair_mesh(diagnose_geom(model, geom, geoms, hull_shapes))
     return meshes[key]
@@ -207,7 +209,12 @@ def _repair_mesh(diagnosis: Diagnosis | None) -> TriMesh:
     return diagnosis.mesh
 
 
+def _wrap(vertices: NDArray[np.float64], name: str) -> TriMesh:
+    """The convex hull of the mesh of a geom, built once for each; messages call it `name`."""
+    return recall(_CONVEX, (vertices,), lambda: convex_hull(vertices, name))
+
+
 def _build_primitive(model: mujoco.MjModel, geom: int) -> TriMesh:
     """The mesh of a geom that is no mesh, built once for each type and size."""
     kind, size = int(model.geom_type[geom]), model.geom_size[geom]
-    return recall(_MESHES, (kind, size), lambda: _PRIMITIVES[kind](size))
+    return recall(_BUILT, (kind, size), lambda: _PRIMITIVES[kind](size))
