@@ -13,9 +13,18 @@ import numpy as np
 import pytest
 import trimesh
 
-from buoyancy_mj import Buoyancy, JonswapSea, MeshError, Water, repair
+from buoyancy_mj import (
+    Buoyancy,
+    Damping,
+    JonswapSea,
+    MeshError,
+    Panels,
+    Silhouette,
+    Water,
+    repair,
+)
 from buoyancy_mj.hulls import overlaps
-from buoyancy_mj.loads import silhouettes
+from buoyancy_mj.loads import exposure, silhouettes
 from buoyancy_mj.meshes import cache, cache_files, cache_version, shapes
 from buoyancy_mj.meshes import repair as repairs
 from buoyancy_mj.submersion import exact
@@ -53,11 +62,11 @@ def model():
     return spec.compile()
 
 
-def build(model):
+def build(model, damping):
     """What acts on a model, as a list of arrays, and what was told."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        buoyancy = Buoyancy(model, WAVES)
+        buoyancy = Buoyancy(model, WAVES, damping=damping)
     arrays = list(list_arrays(buoyancy._acting.load_model.arrays))
     names = [hull.name for hull in buoyancy.hulls]
     return arrays, names, [str(one.message) for one in caught]
@@ -89,8 +98,9 @@ def forbid_all(monkeypatch):
         (repairs, "_repair"),
         (overlaps, "_join_hulls"),
         (silhouettes, "_measure"),
+        (exposure, "count_windings"),
         (exact, "build_tree"),
-        (shapes, "_revolve"),
+        (shapes, "capsule"),
     ):
         monkeypatch.setattr(place, name, forbid)
 
@@ -98,26 +108,28 @@ def forbid_all(monkeypatch):
 # the same
 
 
+@pytest.mark.parametrize("viscous", [Silhouette(), Panels()], ids=["silhouettes", "panels"])
 def test_what_acts_is_the_same_from_disk_from_memory_and_without_a_cache(
-    model, folder, monkeypatch
+    model, folder, monkeypatch, viscous
 ):
+    damping = Damping(viscous=viscous)
     # the two boxes, which share an edge, count as what no union takes
     join = overlaps.to_manifold
     monkeypatch.setattr(overlaps, "to_manifold", lambda v, f: None if len(f) == 24 else join(v, f))
     monkeypatch.setenv("BUOYANCY_MJ_CACHE", "")
-    without = build(model)
+    without = build(model, damping)
     assert without[1] == ["ball + box", "twins", "mast"]
     assert any("1 hole with 3 edges" in text for text in without[2])
     assert any(text.startswith("geom 'twins': more than two faces") for text in without[2])
     assert not folder.exists()
     cache.forget()
     monkeypatch.setenv("BUOYANCY_MJ_CACHE", str(folder.parent))
-    first = build(model)
+    first = build(model, damping)
     check_same(first, without)
     forbid_all(monkeypatch)
-    check_same(build(model), without)
+    check_same(build(model, damping), without)
     cache.forget()
-    check_same(build(model), without)
+    check_same(build(model, damping), without)
 
 
 def test_a_refusal_is_told_again_with_the_name_of_the_mesh_at_hand():
@@ -246,6 +258,7 @@ def test_the_version_covers_all_the_code_that_finds_what_is_kept():
         "meshes.shapes",
         "meshes.convex",
         "hulls.overlaps",
+        "loads.exposure",
         "loads.silhouettes",
         "meshes.tree",
         "meshes.refinement",

@@ -16,11 +16,12 @@ _LOADED = time.time()
 SOURCES = (
     "errors.py",
     "files.py",
+    "hulls/bodies.py",
     "hulls/hull.py",
     "hulls/overlaps.py",
-    "kernels/processor.py",
-    "kernels/rays.py",
-    "kernels/tree.py",
+    "hulls/welds.py",
+    "kernels/*.py",
+    "loads/exposure.py",
     "loads/silhouettes.py",
     "meshes/*.py",
 )

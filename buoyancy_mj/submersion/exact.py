@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.errors import MethodError, describe
 from buoyancy_mj.kernels import clip, planning, pressure, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
-from buoyancy_mj.kernels.hulls import AREA_OF_FACE, WHOLE_VOLUME, Hulls
+from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
 from buoyancy_mj.kernels.scratch import Scratch, new_scratches
 from buoyancy_mj.kernels.sea import PressureModel, Sea
@@ -196,13 +196,13 @@ def _hulls(
     # itself stays
     moments = np.concatenate([t.moments for t in trees])
     moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
-    areas = np.concatenate([t.areas for t in trees])
-    areas[:, :AREA_OF_FACE] *= np.repeat(fills, np.diff(first_face))[:, None]
+    vectors = np.concatenate([t.vectors for t in trees])
+    shares = np.repeat(fills, np.diff(first_face))[:, None]
 
     return Hulls(
         vertices,
         faces,
-        areas,
+        np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)]),
         first_node,
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
