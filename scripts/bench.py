@@ -14,6 +14,7 @@ All values are medians or means over repeats:
 - sea: a sea of 64 waves against one wave;
 - batch: batches on one thread and on two;
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
+- build: the water of a model whose meshes are new, or were seen before;
 - first_step: the time from a fresh interpreter through the first step;
 - statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections.
 """
@@ -46,6 +47,7 @@ BENCHMARKS = {
     "sea": Benchmark(steps.measure_sea, steps.describe_sea),
     "batch": Benchmark(steps.measure_batch, steps.describe_batch),
     "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time),
+    "build": Benchmark(steps.measure_build, steps.describe_build),
     "first_step": Benchmark(steps.measure_first_step, steps.describe_first_step),
     "statics": Benchmark(statics.measure, statics.describe),
 }

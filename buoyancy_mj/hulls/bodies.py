@@ -41,8 +41,10 @@ def group_floating_bodies(model: mujoco.MjModel) -> tuple[NDArray[np.int64], ...
     A group is a kinematic tree, or several that active welds and connects hold together. Static
     bodies and mocap bodies belong to none.
     """
-    edges = np.array(_find_joined_trees(model), np.int64).reshape(-1, 2)
-    labels = trimesh.graph.connected_component_labels(edges, model.ntree)
+    labels = np.arange(model.ntree)
+    edges = _find_joined_trees(model)
+    if edges:
+        labels = trimesh.graph.connected_component_labels(np.array(edges), model.ntree)
     return tuple(
         np.flatnonzero(np.isin(model.body_treeid, np.flatnonzero(labels == label)))
         for label in dict.fromkeys(labels.tolist())

@@ -1,6 +1,5 @@
 """From an `MjModel` to its hulls: the geoms that displace water, with their bodies and meshes."""
 
-import functools
 import warnings
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
@@ -15,13 +14,15 @@ from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import geom_name
 from buoyancy_mj.hulls.overlaps import join_overlapping
 from buoyancy_mj.hulls.patterns import parse_fills, parse_shapes
+from buoyancy_mj.hulls.places import locate_geom
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.hulls.verdicts import SOLID_TYPES, judge_geoms
 from buoyancy_mj.meshes import shapes
+from buoyancy_mj.meshes.cache import Form, recall
 from buoyancy_mj.meshes.convex import convex_hull
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.mesh import TriMesh
-from buoyancy_mj.meshes.repair import diagnose
+from buoyancy_mj.meshes.repair import examine
 
 _MESH, _BOX, _SPHERE, _ELLIPSOID, _CYLINDER, _CAPSULE = SOLID_TYPES
 _PRIMITIVES: Mapping[int, Callable[[NDArray[np.float64]], TriMesh]] = {
@@ -32,6 +33,9 @@ _PRIMITIVES: Mapping[int, Callable[[NDArray[np.float64]], TriMesh]] = {
     _CAPSULE: lambda size: shapes.capsule(size[0], size[1]),
 }
 """What builds the mesh of a geom from its `geom_size`, by the type of the geom."""
+_BUILT, _CONVEX = (
+    Form(name, TriMesh.to_arrays, TriMesh.from_arrays) for name in ("primitive", "convex hull")
+)
 
 
 def find_hulls(
@@ -78,20 +82,18 @@ def build_hulls(
     Raises:
         MeshError: a mesh that bounds no volume; the message names the geom.
     """
-    data = mujoco.MjData(model)
-    mujoco.mj_kinematics(model, data)
     meshes: dict[tuple[Any, ...], TriMesh] = {}
     hulls = []
     for geom in geoms:
         mesh = _build_mesh(model, geom, geoms, hull_shapes, meshes)
-        hulls.append(_build_hull(model, data, geom, mesh, fills.get(geom, 1.0)))
+        hulls.append(_build_hull(model, geom, mesh, fills.get(geom, 1.0)))
     return join_overlapping(hulls)
 
 
 def diagnose_geom(
     model: mujoco.MjModel, geom: int, geoms: Sequence[int], hull_shapes: Mapping[int, str]
 ) -> Diagnosis | None:
-    """Diagnose the mesh of a geom, once for each mesh; None for a geom of another type.
+    """Diagnose the mesh of a geom; None for a geom of another type.
 
     Args:
         model: any model.
@@ -103,16 +105,15 @@ def diagnose_geom(
         return None
     arrays = read_geom_mesh(model, geom)
     assert arrays is not None
+    found, name = examine(*arrays), describe_mesh(model, geom, geoms)
+    if found.mesh is not None:
+        return found.told_of(name)
 
     # the geoms that a convex hull would help, beside those that have theirs already
     sharing = find_sharing(model, geom, geoms)
     convex = {g for g, shape in hull_shapes.items() if shape == "convex"}
     choice = describe_convex_choice(model, convex | set(sharing), geoms)
-    return _diagnose(
-        *(values.tobytes() for values in arrays),
-        describe_mesh(model, geom, geoms),
-        f"take its convex hull ({choice}), or leave the geom out (--geoms)",
-    )
+    return found.told_of(name, f"take its convex hull ({choice}), or leave the geom out (--geoms)")
 
 
 def read_geom_mesh(
@@ -131,7 +132,7 @@ def read_geom_mesh(
         return vertices, model.mesh_face[f : f + m].astype(np.int64)
     if kind not in _PRIMITIVES:
         return None
-    primitive = _PRIMITIVES[kind](model.geom_size[geom])
+    primitive = _build_primitive(model, geom)
     return primitive.vertices, primitive.faces
 
 
@@ -158,19 +159,17 @@ def describe_mesh(model: mujoco.MjModel, geom: int, geoms: Sequence[int]) -> str
     return f"mesh '{model.mesh(asset).name}' of geom '{geom_name(model, sharing[0])}'{others}"
 
 
-def _build_hull(
-    model: mujoco.MjModel, data: mujoco.MjData, geom: int, mesh: TriMesh, fill: float
-) -> Hull:
+def _build_hull(model: mujoco.MjModel, geom: int, mesh: TriMesh, fill: float) -> Hull:
     """The hull of a geom, in the body that it moves with."""
     body = int(model.body_weldid[model.geom_bodyid[geom]])
-    body_from_world = data.xmat[body].reshape(3, 3).T
+    body_from_geom, position = locate_geom(model, geom, body)
     return Hull(
         geom=geom,
         body=body,
         name=geom_name(model, geom),
         mesh=mesh,
-        body_from_geom=body_from_world @ data.geom_xmat[geom].reshape(3, 3),
-        position=body_from_world @ (data.geom_xpos[geom] - data.xpos[body]),
+        body_from_geom=body_from_geom,
+        position=position,
         fill=fill,
         geoms=(geom,),
     )
@@ -190,11 +189,11 @@ def _build_mesh(
     key = (convex, int(model.geom_type[geom]), *map(float, shape))
     if key not in meshes:
         if not is_mesh:
-            meshes[key] = _PRIMITIVES[int(model.geom_type[geom])](model.geom_size[geom])
+            meshes[key] = _build_primitive(model, geom)
         elif convex:
             arrays = read_geom_mesh(model, geom)
             assert arrays is not None
-            meshes[key] = convex_hull(arrays[0], describe_mesh(model, geom, geoms))
+            meshes[key] = _wrap(arrays[0], describe_mesh(model, geom, geoms))
         else:
             meshes[key] = _repair_mesh(diagnose_geom(model, geom, geoms, hull_shapes))
     return meshes[key]
@@ -210,12 +209,12 @@ def _repair_mesh(diagnosis: Diagnosis | None) -> TriMesh:
     return diagnosis.mesh
 
 
-@functools.lru_cache(maxsize=64)
-def _diagnose(vertices: bytes, faces: bytes, name: str, mend: str) -> Diagnosis:
-    """Diagnose a mesh once: each run of a sweep reads the same vehicle again."""
-    return diagnose(
-        np.frombuffer(vertices).reshape(-1, 3),
-        np.frombuffer(faces, np.int64).reshape(-1, 3),
-        name=name,
-        mend=mend,
-    )
+def _wrap(vertices: NDArray[np.float64], name: str) -> TriMesh:
+    """The convex hull of the mesh of a geom, built once for each; messages call it `name`."""
+    return recall(_CONVEX, (vertices,), lambda: convex_hull(vertices, name))
+
+
+def _build_primitive(model: mujoco.MjModel, geom: int) -> TriMesh:
+    """The mesh of a geom that is no mesh, built once for each type and size."""
+    kind, size = int(model.geom_type[geom]), model.geom_size[geom]
+    return recall(_BUILT, (kind, size), lambda: _PRIMITIVES[kind](size))

@@ -59,4 +59,5 @@ def combine_volumes(hulls: Sequence[Hull]) -> tuple[float, NDArray[np.float64]]:
     """
     volumes = np.array([hull.displaced_volume for hull in hulls])
     volume = float(volumes.sum())
-    return volume, volumes @ [hull.mesh_in_body.centroid for hull in hulls] / volume
+    centroids = [hull.body_from_geom @ hull.mesh.centroid + hull.position for hull in hulls]
+    return volume, volumes @ centroids / volume

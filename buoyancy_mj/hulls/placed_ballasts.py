@@ -19,6 +19,7 @@ from buoyancy_mj.hulls.ballasts import (
 )
 from buoyancy_mj.hulls.geoms import build_mesh
 from buoyancy_mj.hulls.names import body_name, geom_kind, geom_name
+from buoyancy_mj.hulls.places import locate_geom
 from buoyancy_mj.hulls.plugins import read_instances
 from buoyancy_mj.hulls.references import find_named
 from buoyancy_mj.hulls.verdicts import SOLID_TYPES
@@ -194,7 +195,7 @@ def place_ballast(model: mujoco.MjModel, instance: int, texts: Mapping[str, str]
             f"'{body_name(model, int(model.site_bodyid[site]))}', and its geom moves with "
             f"'{body_name(model, body)}'; put the site there"
         )
-    rotation, position = _locate_geom(model, geom, body)
+    rotation, position = locate_geom(model, geom, body)
     placed = PlacedBallast(
         name=name,
         ballast=ballast,
@@ -257,23 +258,3 @@ def _check_capacity(model: mujoco.MjModel, placed: PlacedBallast, what: str) -> 
     states = model.actuator_actnum[placed.actuator]
     if states != 1:
         raise ModelError(f"{what} keeps {states} states; write actdim='1', for its volume alone")
-
-
-def _locate_geom(
-    model: mujoco.MjModel, geom: int, body: int
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Rotation (3, 3) and origin (3,) [m] of a geom's frame in that of a body it is fixed to."""
-    rotation, position = _read_matrix(model.geom_quat[geom]), model.geom_pos[geom].copy()
-    link = int(model.geom_bodyid[geom])
-    while link != body:
-        turn = _read_matrix(model.body_quat[link])
-        rotation, position = turn @ rotation, turn @ position + model.body_pos[link]
-        link = int(model.body_parentid[link])
-    return rotation, position
-
-
-def _read_matrix(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The rotation (3, 3) of a quaternion (4,)."""
-    matrix = np.empty(9)
-    mujoco.mju_quat2Mat(matrix, quaternion)
-    return matrix.reshape(3, 3)

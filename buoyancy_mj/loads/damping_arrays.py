@@ -161,7 +161,7 @@ def _resolve_radiation(
     for row, (body, shape) in zip(rows, shapes.items(), strict=True):
         if body in numerics:
             row[:3] = _check_numbers(model, body, "radiation", numerics[body], (3,))
-            row[3] = shape.silhouettes(shape.meshes).areas[2].sum()
+            row[3] = shape.silhouettes(shape.meshes).areas[2]
     return rows
 
 

@@ -11,11 +11,13 @@ from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.panels import ALONE, TOGETHER
 from buoyancy_mj.kernels.rays import count_windings
+from buoyancy_mj.meshes.cache import Form, recall
 
 _CLOSE = (1e-5, 1e-3)
 """How far before a face another hull is looked for, over the diagonal of the smaller hull.
 
 Two distances, so that one is found that is thinner than the farther one."""
+_EXPOSED = Form("exposure", lambda parts: {"parts": parts}, lambda arrays: arrays["parts"])
 _POINTS = 4
 """Points along each side of a face, at which it is looked at."""
 
@@ -83,7 +85,12 @@ class _Shape:
         self.diagonal = float(np.linalg.norm(np.ptp(self.bounds, axis=0)))
 
     def exposure(self, others: Sequence["_Shape"]) -> NDArray[np.float64]:
-        """The part of each face (f,) that no other hull covers."""
+        """The part of each face (f,) that no other hull covers, found once for the same hulls."""
+        shapes = (self, *others)
+        parts = tuple(array for one in shapes for array in (one.vertices, one.faces))
+        return recall(_EXPOSED, parts, lambda: self._uncover(others))
+
+    def _uncover(self, others: Sequence["_Shape"]) -> NDArray[np.float64]:
         covered = np.zeros((len(self.faces), _POINTS**2), np.bool_)
         for other in others:
             for part in _CLOSE:

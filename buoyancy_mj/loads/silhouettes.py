@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels.rays import see
+from buoyancy_mj.meshes.cache import Form, recall
 from buoyancy_mj.meshes.mesh import TriMesh
 
 CELLS = 200
@@ -20,17 +21,17 @@ RELIEF = 0.18
 
 
 class Silhouettes(NamedTuple):
-    """What a body shows along each of its axes, on a grid over its bounding box.
+    """What a body shows along each of its axes, measured on a grid over its bounding box.
 
     Only what is seen from outside counts: faces behind others add nothing.
     """
 
     areas: NDArray[np.float64]
-    """Area of each cell that the body covers, along x, y, z (3, CELLS, CELLS) [m^2]; 0 elsewhere.
+    """Area of the silhouette along x, y, z (3,) [m^2]."""
+    arms: NDArray[np.float64]
+    """Integral over each silhouette of the cube of the distance from the centre (3, 2) [m^5].
 
-    The cells of the silhouette along an axis run along the next axis, then the one after it."""
-    middles: NDArray[np.float64]
-    """Coordinates of the middles of the cells along x, y, z (CELLS, 3) [m], from the centre."""
+    Along the axis after the one that it is seen along, and along the one after that."""
     extents: NDArray[np.float64]
     """Sides of the bounding box (3,) [m]."""
     bluffness: NDArray[np.float64]
@@ -45,8 +46,16 @@ class Silhouettes(NamedTuple):
         return float(self.extents.max())
 
 
+_SILHOUETTES = Form("silhouettes", Silhouettes._asdict, lambda arrays: Silhouettes(**arrays))
+
+
 def measure_silhouettes(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) -> Silhouettes:
     """Measure the silhouettes of meshes in the frame of their body, from a centre (3,) [m]."""
+    parts = (*(mesh.checksum for mesh in meshes), centre)
+    return recall(_SILHOUETTES, parts, lambda: _measure(meshes, centre))
+
+
+def _measure(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) -> Silhouettes:
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     vertices = np.vstack([mesh.vertices for mesh in meshes]) - centre
     faces = np.vstack([mesh.faces + start for mesh, start in zip(meshes, starts, strict=False)])
@@ -57,7 +66,8 @@ def measure_silhouettes(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) 
     high = vertices.max(axis=0)
     step = (high - low) / CELLS
 
-    areas, bluffness, walls = np.empty((3, CELLS, CELLS)), np.empty(3), np.zeros(3)
+    middles = low + (np.arange(CELLS)[:, None] + 0.5) * step
+    areas, arms, bluffness, walls = np.empty(3), np.empty((3, 2)), np.empty(3), np.zeros(3)
     for axis in range(3):
         # the faces that are seen first from both sides, and in how many cells
         j, k = (axis + 1) % 3, (axis + 2) % 3
@@ -68,11 +78,13 @@ def measure_silhouettes(meshes: Sequence[TriMesh], centre: NDArray[np.float64]) 
 
         # a face is seen along all axes by shares of its area whose sum is 1: its square cosines
         cell = step[j] * step[k]
-        areas[axis] = cell * (seen[0] >= 0)
+        covered = seen[0] >= 0
+        areas[axis] = cell * covered.sum()
+        arms[axis, 0] = cell * covered.sum(axis=1) @ np.abs(middles[:, j]) ** 3
+        arms[axis, 1] = cell * covered.sum(axis=0) @ np.abs(middles[:, k]) ** 3
         bluffness[axis] = cells @ normals[:, axis] ** 2 / cells.sum()
         walls += cell * (cells * normals[:, axis]) @ (1.0 - normals**2)
-    middles = low + (np.arange(CELLS)[:, None] + 0.5) * step
-    return Silhouettes(areas, middles, high - low, bluffness, walls)
+    return Silhouettes(areas, arms, high - low, bluffness, walls)
 
 
 def estimate_drag(
@@ -92,16 +104,15 @@ def estimate_drag(
     for axis in range(3):
         # the drag coefficient along this axis: pressure, and friction on the sides
         j, k = (axis + 1) % 3, (axis + 2) % 3
-        cells = silhouettes.areas[axis]
-        area = float(cells.sum())
+        area = float(silhouettes.areas[axis])
         slenderness = silhouettes.extents[axis] / math.sqrt(4.0 * area / math.pi)
         closed = float(np.interp(slenderness, REATTACHING, (0.0, 1.0)))
         pressure = coefficient * silhouettes.bluffness[axis] * (1.0 - RELIEF * closed)
         total = pressure + friction * silhouettes.walls[axis] / area
 
         # turning about j moves the strips at distance |k| along this axis, and the other way round
-        strips = 0.5 * density * total * cells
-        drag[axis] = strips.sum()
-        drag[3 + j] += (strips * np.abs(silhouettes.middles[None, :, k]) ** 3).sum()
-        drag[3 + k] += (strips * np.abs(silhouettes.middles[:, None, j]) ** 3).sum()
+        along_j, along_k = silhouettes.arms[axis]
+        drag[axis] = 0.5 * density * total * area
+        drag[3 + j] += 0.5 * density * total * along_k
+        drag[3 + k] += 0.5 * density * total * along_j
     return drag

@@ -1,8 +1,17 @@
 """`Diagnosis`: the faults of a mesh, what was repaired, and whether a hull came out."""
 
 import dataclasses
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.meshes.mesh import TriMesh
+
+MEND = "{mend}"
+"""What stands in the refusal of a mesh without a name for what helps beside a better mesh."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,8 +30,8 @@ class Hole:
 class Diagnosis:
     """The faults of a mesh, what was repaired, and the hull if there is one."""
 
-    name: str
-    """What messages call the mesh."""
+    name: str = ""
+    """What messages call the mesh; '' if they do not name it yet."""
     mend: str = "or take its convex hull instead"
     """What helps beside a better mesh where no repair is safe: the end of a refusal."""
     triangles: int = 0
@@ -61,6 +70,36 @@ class Diagnosis:
     """Why the mesh cannot be a hull, and what to do about it; '' if it can."""
     mesh: TriMesh | None = None
     """The hull; None if the mesh was refused."""
+
+    def told_of(self, name: str, mend: str = mend) -> "Diagnosis":
+        """The same diagnosis with messages that name the mesh.
+
+        Args:
+            name: what they call it.
+            mend: what helps beside a better mesh where no repair is safe.
+        """
+        refusal = f"{name}: {self.refusal.replace(MEND, mend)}" if self.refusal else ""
+        notices = [f"{name}: {notice}" for notice in self.notices]
+        return dataclasses.replace(self, name=name, mend=mend, refusal=refusal, notices=notices)
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """All of it as arrays, its numbers and texts as JSON."""
+        facts = {
+            field.name: getattr(self, field.name)
+            for field in dataclasses.fields(self)
+            if field.name not in ("holes", "mesh")
+        }
+        facts["holes"] = [dataclasses.astuple(hole) for hole in self.holes]
+        texts = np.frombuffer(json.dumps(facts).encode(), np.uint8)
+        return {"facts": texts} | (self.mesh.to_arrays() if self.mesh else {})
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "Diagnosis":
+        """The diagnosis that `to_arrays` gave the arrays of."""
+        facts = json.loads(arrays["facts"].tobytes())
+        facts["holes"] = tuple(Hole(*hole) for hole in facts["holes"])
+        facts["extents"] = tuple(facts["extents"])
+        return cls(**facts, mesh=TriMesh.from_arrays(arrays) if "faces" in arrays else None)
 
     @property
     def repaired(self) -> bool:

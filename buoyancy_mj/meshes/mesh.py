@@ -1,12 +1,15 @@
 """`TriMesh`: a triangle mesh that is closed and outward, or does not exist."""
 
 import dataclasses
+from collections.abc import Mapping
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
+from buoyancy_mj.meshes.cache import take_checksum
 from buoyancy_mj.meshes.surface import Surface, boundary_edges, check_arrays, compact, tetrahedra
 
 
@@ -45,18 +48,36 @@ class TriMesh:
                 "a hull must be closed: close it, or let buoyancy_mj.repair try"
             )
 
-        # copies of its own, which nobody can write to
-        v, f = v.copy(), f.copy()
-        v.setflags(write=False)
-        f.setflags(write=False)
-        object.__setattr__(self, "vertices", v)
-        object.__setattr__(self, "faces", f)
+        # copies of its own
+        self._take(v.copy(), f.copy())
         if not self.volume > 0.0:
             raise MeshError(
                 f"a mesh of {len(f)} triangles encloses {self.volume:.3g} m^3; "
                 "a hull must enclose a positive volume: "
                 "turn its faces outward, or let buoyancy_mj.repair try"
             )
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Its arrays, and what was measured of it, for `from_arrays`."""
+        measures = np.array([self.volume, self.area, self.longest_edge, *self.centroid])
+        return {"vertices": self.vertices, "faces": self.faces, "measures": measures}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "TriMesh":
+        """The mesh that `to_arrays` gave the arrays of; it is sound, and not checked again."""
+        mesh = object.__new__(cls)
+        mesh._take(arrays["vertices"], arrays["faces"])
+        volume, area, longest = arrays["measures"][:3].tolist()
+        mesh.__dict__.update(volume=volume, area=area, longest_edge=longest)
+        mesh.__dict__.update(centroid=arrays["measures"][3:])
+        return mesh
+
+    def _take(self, vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> None:
+        """Keep arrays, to which nobody can write from now on."""
+        vertices.setflags(write=False)
+        faces.setflags(write=False)
+        object.__setattr__(self, "vertices", vertices)
+        object.__setattr__(self, "faces", faces)
 
     def __repr__(self) -> str:
         counts = f"{len(self.vertices)} vertices, {len(self.faces)} faces"
@@ -80,7 +101,7 @@ class TriMesh:
         areas: NDArray[np.float64] = np.linalg.norm(self.area_vectors, axis=1)
         return areas
 
-    @property
+    @cached_property
     def area(self) -> float:
         """Surface area [m^2]."""
         return float(self.areas.sum())
@@ -97,12 +118,20 @@ class TriMesh:
         a, b, c = self.corners
         sums = (a - middle) + (b - middle) + (c - middle)
         centroid: NDArray[np.float64] = middle + self._tetrahedra @ sums / (4.0 * self.volume)
+        centroid.setflags(write=False)
         return centroid
 
     @cached_property
     def _tetrahedra(self) -> NDArray[np.float64]:
         """Signed volumes (m,) [m^3] of the tetrahedra between the faces and the mean vertex."""
         return tetrahedra(self.vertices, self.faces)
+
+    @cached_property
+    def longest_edge(self) -> float:
+        """Length of the longest edge [m]."""
+        a, b, c = self.corners
+        squares = [np.square(q - p).sum(axis=1).max() for p, q in ((a, b), (b, c), (c, a))]
+        return float(np.sqrt(max(squares)))
 
     @cached_property
     def radius(self) -> float:
@@ -121,6 +150,11 @@ class TriMesh:
         return sides
 
     @cached_property
+    def checksum(self) -> bytes:
+        """The same for meshes with the same arrays, for results that depend on these alone."""
+        return take_checksum(self.vertices, self.faces)
+
+    @cached_property
     def compact(self) -> Surface:
         """Vertices (n, 3) [m] that faces use, and the faces (m, 3) as indices into these."""
         return compact(self.vertices, self.faces)
@@ -130,10 +164,7 @@ class TriMesh:
     ) -> "TriMesh":
         """A copy turned by a rotation matrix (3, 3), then moved by `translation` (3,) [m]."""
         vertices = self.vertices @ np.asarray(rotation, float).T + np.asarray(translation, float)
-        vertices.setflags(write=False)
-
         # a rigid motion of a sound mesh is sound: it needs no second check
         moved = object.__new__(TriMesh)
-        object.__setattr__(moved, "vertices", vertices)
-        object.__setattr__(moved, "faces", self.faces)
+        moved._take(vertices, self.faces)
         return moved

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
+from buoyancy_mj.meshes.cache import Form, recall
 from buoyancy_mj.meshes.cleaning import close_seams, merge_vertices, wind_alike
-from buoyancy_mj.meshes.diagnosis import Diagnosis
+from buoyancy_mj.meshes.diagnosis import MEND, Diagnosis
 from buoyancy_mj.meshes.holes import close_holes
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.pieces import find_crossings, join_pieces, turn_outward
@@ -25,6 +26,7 @@ SUSPICIOUS = 50.0
 """Longest side [m] above which a mesh was often drawn in millimetres."""
 LONGEST = 1e3
 """Longest side [m] of the largest mesh that could float."""
+_DIAGNOSES = Form("diagnosis", Diagnosis.to_arrays, Diagnosis.from_arrays)
 
 
 def repair(vertices: ArrayLike, faces: ArrayLike, name: str = "mesh") -> tuple[TriMesh, list[str]]:
@@ -63,19 +65,30 @@ def diagnose(
         name: what messages call the mesh.
         mend: what helps beside a better mesh where no repair is safe: the end of a refusal.
     """
-    report = Diagnosis(name, mend)
+    return examine(vertices, faces).told_of(name, mend)
+
+
+def examine(vertices: ArrayLike, faces: ArrayLike) -> Diagnosis:
+    """Find the faults of a mesh that has no name yet, once for each mesh; see `diagnose`."""
     try:
-        report.mesh = _repair(report, vertices, faces)
+        v, f = check_arrays(vertices, faces)
     except MeshError as error:
-        report.refusal = f"{name}: {error}"
-    report.notices = [f"{name}: {notice}" for notice in report.notices]
+        return Diagnosis(refusal=str(error))
+    return recall(_DIAGNOSES, (v, f), lambda: _diagnose(v, f))
+
+
+def _diagnose(v: NDArray[np.float64], f: NDArray[np.int64]) -> Diagnosis:
+    report = Diagnosis()
+    try:
+        report.mesh = _repair(report, v, f)
+    except MeshError as error:
+        report.refusal = str(error)
     return report
 
 
-def _repair(report: Diagnosis, vertices: ArrayLike, faces: ArrayLike) -> TriMesh:
+def _repair(report: Diagnosis, v: NDArray[np.float64], f: NDArray[np.int64]) -> TriMesh:
     """Repair a mesh step by step, each of which fills in its part of the report."""
     # measure it as it is
-    v, f = check_arrays(vertices, faces)
     report.triangles = len(f)
     report.original_volume = signed_volume(v, f)
     report.extents = tuple(np.ptp(v[np.unique(f)], axis=0).tolist())
@@ -137,7 +150,7 @@ def _check_holes(report: Diagnosis, volume: float) -> None:
         f"({uncertain / volume:.2%} of its volume) in doubt"
     )
     if uncertain > MOST_UNCERTAIN * volume:
-        raise MeshError(f"it is open: {finding}; close the mesh, {report.mend}")
+        raise MeshError(f"it is open: {finding}; close the mesh, {MEND}")
     report.notices.append(f"{finding}; they were closed")
 
 
@@ -148,7 +161,7 @@ def _check_crossings(report: Diagnosis, volume: float) -> None:
         raise MeshError(
             f"it crosses itself: about {report.doubled_volume:.3g} m^3 is enclosed twice and "
             f"{report.inside_out_volume:.3g} m^3 inside out, of {volume:.3g} m^3; "
-            f"join its parts by a boolean union, {report.mend}"
+            f"join its parts by a boolean union, {MEND}"
         )
     if crossing > NOTICEABLE * volume:
         report.notices.append(

@@ -28,6 +28,8 @@ class Tree(NamedTuple):
     """Middle and half sides of each node's bounding box (n, 6) [m]."""
     moments: NDArray[np.float64]
     """Moments of each node's vector area (n, 31) [m^2, m^3, m^4]."""
+    vectors: NDArray[np.float64]
+    """Vector area of each face, in the order of the tree (m, 3) [m^2]."""
 
 
 def build_tree(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
@@ -49,8 +51,12 @@ def build_tree(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
     moments = np.empty((len(spans), kernels.MOMENTS))
     kernels.measure(vertices[faces[order]], spans, boxes, moments)
 
+    # measure the faces
+    a, b, c = vertices[faces[order].T]
+    vectors = 0.5 * np.cross(b - a, c - a)
+
     # give each leaf its own vertices
     faces = faces[order]
     used = np.empty(3 * n, np.int64)
     count = kernels.spread(faces, spans, len(vertices), used)
-    return Tree(vertices[used[:count]], faces, spans, boxes, moments)
+    return Tree(vertices[used[:count]], faces, spans, boxes, moments, vectors)

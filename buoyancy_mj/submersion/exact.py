@@ -1,9 +1,9 @@
 """`Exact`: the default method, the meshes themselves, cut where the surface cuts them."""
 
 import dataclasses
+import math
 from collections.abc import Mapping, Sequence
 from typing import ClassVar
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,8 @@ from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
 from buoyancy_mj.kernels.scratch import Scratch, new_scratches
 from buoyancy_mj.kernels.sea import PressureModel, Sea
+from buoyancy_mj.meshes import tree as meshes_tree
+from buoyancy_mj.meshes.cache import Form, recall
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.tree import Tree, build_tree
@@ -26,7 +28,7 @@ from buoyancy_mj.values import set_number
 
 FINEST = 1e-8
 """Least tolerance; sums over that many triangles round off about so much."""
-_TREES: WeakKeyDictionary[TriMesh, dict[float, Tree]] = WeakKeyDictionary()
+_TREES = Form("tree", Tree._asdict, lambda arrays: Tree(**arrays))
 
 
 @dataclasses.dataclass(frozen=True)
@@ -202,8 +204,7 @@ def _hulls(
     # itself stays
     moments = np.concatenate([t.moments for t in trees])
     moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
-    a, b, c = vertices[faces.T]
-    vectors = 0.5 * np.cross(b - a, c - a)
+    vectors = np.concatenate([t.vectors for t in trees])
     shares = np.repeat(fills, np.diff(first_face))[:, None]
 
     radii = [0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes]
@@ -235,8 +236,11 @@ def _whole(mesh: TriMesh, tree: Tree, fill: float, allowed: float) -> list[float
 
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:
-    """The tree of a mesh with edges no longer than `edge` [m], built once while the mesh lives."""
-    trees = _TREES.setdefault(mesh, {})
-    if edge not in trees:
-        trees[edge] = build_tree(*refine(mesh.vertices, mesh.faces, edge))
-    return trees[edge]
+    """The tree of a mesh with edges no longer than `edge` [m], built once for each."""
+    if math.isfinite(edge) and edge >= mesh.longest_edge:
+        edge = math.inf
+    return recall(
+        _TREES,
+        (mesh.checksum, edge, meshes_tree.FEW, meshes_tree.LEAF),
+        lambda: build_tree(*refine(mesh.vertices, mesh.faces, edge)),
+    )

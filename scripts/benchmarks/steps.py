@@ -1,6 +1,7 @@
 """Steps of scenes: with water and without, in seas, in batches, as whole runs, and the first."""
 
 import dataclasses
+import os
 import statistics
 import subprocess
 import sys
@@ -13,7 +14,8 @@ import mujoco
 import numpy as np
 from mujoco import batch
 
-from buoyancy_mj import JonswapSea, RegularWave, Scene, Simulation, read_scene
+from buoyancy_mj import Buoyancy, JonswapSea, RegularWave, Scene, Simulation, read_scene
+from buoyancy_mj.meshes import cache
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.viz.recording import Recording
@@ -24,6 +26,8 @@ COMPONENTS = 64
 """Waves of the sea."""
 COPIES = 64
 """Simulations of a batch."""
+BUILT = ("sauvc_auv", "bluerov2_heavy", "catamaran", "hourglass")
+"""Models whose water is built."""
 
 
 def _load_scene(name: str, *settings: str) -> Scene:
@@ -169,6 +173,50 @@ def describe_real_time(results: dict[str, float]) -> Iterator[str]:
         f"auv_waves: {results['headless']:.1f} x real time headless, "
         f"{results['recorded']:.1f} x recorded at 60 Hz"
     )
+
+
+# building the water of a model
+
+
+def measure_build(quick: bool) -> Results:
+    """Measure processor time [s] to build `Buoyancy` of meshes that are new, or were seen before.
+
+    By another process, or by this one. Everything is imported and compiled.
+    """
+    before = os.environ.get("BUOYANCY_MJ_CACHE")
+    try:
+        return {name: _build_times(name, 1 if quick else 5) for name in BUILT}
+    finally:
+        os.environ.pop("BUOYANCY_MJ_CACHE")
+        if before is not None:
+            os.environ["BUOYANCY_MJ_CACHE"] = before
+
+
+def _build_times(name: str, repeats: int) -> dict[str, float]:
+    """Least time to build a model that ships, by who has seen its meshes before."""
+    model = mujoco.MjModel.from_xml_path(str(catalog.models()[name]))
+    times = {"new": np.inf, "on disk": np.inf, "in memory": np.inf}
+    Buoyancy(model)
+    for _ in range(repeats):
+        with tempfile.TemporaryDirectory() as folder:
+            os.environ["BUOYANCY_MJ_CACHE"] = folder
+            for kind in times:
+                if kind != "in memory":
+                    cache.forget()
+                started = time.process_time()
+                Buoyancy(model)
+                times[kind] = min(times[kind], time.process_time() - started)
+    return times
+
+
+def describe_build(results: Results) -> Iterator[str]:
+    """Describe each model in a line."""
+    for name, times in results.items():
+        yield (
+            f"building the water of {name}: {times['new'] * 1e3:.0f} ms of new meshes, "
+            f"{times['on disk'] * 1e3:.1f} ms of those that another process has seen, "
+            f"{times['in memory'] * 1e3:.1f} ms of those that this one has"
+        )
 
 
 # the first step
