@@ -8,7 +8,7 @@ from buoyancy_mj.errors import DivergenceError
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.kernels.arrays import conform
-from buoyancy_mj.kernels.watching import Bounds, count_calm
+from buoyancy_mj.kernels.watching import Bounds, count_calm, is_calm
 from buoyancy_mj.scenes.floors import Floors
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.trajectory import Poses, Trajectory
@@ -23,6 +23,7 @@ QUANTITIES = {
     mujoco.mjtWarning.mjWARN_BADQACC: "acceleration",
 }
 """The quantity that is bad, by the warning that MuJoCo counts."""
+_BAD_VALUES = [int(warning) for warning in QUANTITIES]
 
 
 class Limits:
@@ -62,6 +63,8 @@ class Limits:
             DivergenceError: a limit is passed; the error names the body and the quantity.
         """
         check_finite(self._scene, self._model, data)
+        if is_calm(self.bounds, data.xipos, data.cvel):
+            return
         bodies = self._bodies
         centres = data.xipos[bodies]
         arms = centres - data.subtree_com[self._model.body_rootid[bodies]]
@@ -128,6 +131,8 @@ def check_finite(scene: Scene, model: mujoco.MjModel, data: mujoco.MjData) -> No
     Raises:
         DivergenceError: it has; the error names the body and the quantity.
     """
+    if not data.warning.number[_BAD_VALUES].any():
+        return
     for warning, quantity in QUANTITIES.items():
         counter = data.warning[warning]
         if counter.number:

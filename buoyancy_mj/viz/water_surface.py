@@ -38,7 +38,9 @@ class SurfaceDrawing:
         b = a + CELLS + 1
         faces = np.vstack([np.column_stack([a, b, b + 1]), np.column_stack([a, b + 1, a + 1])])
         mesh = rr.Mesh3D.from_fields(triangle_indices=faces, albedo_factor=WATER)
-        log("world/water", mesh, static=True)
+        log.keep("world/water", mesh)
+        radius = 0.0015 * self._size
+        log.keep("world/water/grid", rr.LineStrips3D.from_fields(colors=[GRID], radii=[radius]))
 
     def draw(self, log: Log, middle: NDArray[np.float64], time: float) -> None:
         """Draw the surface around a point (3,) [m] at a time [s]; still water when it moves."""
@@ -56,13 +58,14 @@ class SurfaceDrawing:
         slope_x, slope_y = np.gradient(z, self._cell)
         corners = np.stack([x, y, z], axis=-1)
         normals = np.stack([-slope_x, -slope_y, np.ones_like(z)], axis=-1)
-        mesh = rr.Mesh3D.from_fields(
-            vertex_positions=corners.reshape(-1, 3), vertex_normals=normals.reshape(-1, 3)
+        log.draw(
+            "world/water",
+            rr.Mesh3D,
+            vertex_positions=corners.reshape(-1, 3),
+            vertex_normals=normals.reshape(-1, 3),
         )
-        log("world/water", mesh)
 
         # a grid over every second corner
         lattice = corners[::2, ::2]
         lines = np.concatenate([lattice, lattice.swapaxes(0, 1)])
-        radius = 0.0015 * self._size
-        log("world/water/grid", rr.LineStrips3D(lines, colors=[GRID], radii=[radius]))
+        log.draw("world/water/grid", rr.LineStrips3D, strips=lines)
