@@ -166,7 +166,7 @@ from pathlib import Path
 from buoyancy_mj import RecordingError, Simulation, read_scene
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.viz.recording import Recording
-simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], ["duration=4"]))
+simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], ["duration=8"]))
 recording = Recording(simulation, Path(sys.argv[1]))
 # a file may not grow beyond this: writing fails as on a full disk
 resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))

@@ -36,6 +36,7 @@ class BodyDrawing:
         self._foils = list(find_visible_foils(run.model))
         bodies = {geom.body for geom in self._moving} | {one.foil.body for one in self._foils}
         self._bodies = {body: self._body_entity(body) for body in sorted(bodies)}
+        self._colours = {geom.geom: _mix_colours(geom) for geom in self._moving}
         self._entities = {geom.geom: self._geom_entity(geom) for geom in self._moving}
 
     def draw_static(self, log: Log) -> None:
@@ -95,9 +96,8 @@ class BodyDrawing:
             if geom.geom in self.wet and np.array_equal(wet, self.wet[geom.geom]):
                 continue
             self.wet[geom.geom] = wet
-            water = np.append(WET, geom.colour[3])
-            dyed = (0.45 * geom.colour + 0.55 * water).astype(np.uint8)
-            colours = np.where(wet[:, None], dyed, geom.colour)
+            dry, dyed = self._colours[geom.geom]
+            colours = np.where(wet, dyed, dry)
             log.draw(self._entities[geom.geom], rr.Mesh3D, vertex_colors=colours)
 
     def _uncut_hulls(self, frame: Frame) -> dict[int, bool]:
@@ -143,3 +143,10 @@ class BodyDrawing:
         """The entity of a geom."""
         name = geom_name(self._run.model, geom.geom)
         return f"{self._body_entity(geom.body)}/{rr.escape_entity_path_part(name)}"
+
+
+def _mix_colours(geom: VisibleGeom) -> NDArray[np.uint32]:
+    """The colours of a geom where it is dry and where it is wet (2,), as 0xRRGGBBAA."""
+    water = np.append(WET, geom.colour[3])
+    dyed = (0.45 * geom.colour + 0.55 * water).astype(np.uint8)
+    return np.array([geom.colour, dyed], np.uint8).view(">u4").astype(np.uint32).ravel()

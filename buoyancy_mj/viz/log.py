@@ -11,13 +11,22 @@ TIMELINE = "sim_time"
 """Name of the timeline of simulated time [s]."""
 
 
-class _Row(NamedTuple):
-    """What an entity shows from one time on."""
+class _Rows(NamedTuple):
+    """What an entity shows, each from one time on."""
 
-    time: float
-    """Simulated time [s]."""
-    parts: Mapping[str, NDArray[Any]]
-    """Arrays (n, ...) of its archetype's components, by name."""
+    times: list[float]
+    """Simulated times [s]."""
+    parts: Mapping[str, list[NDArray[Any]]]
+    """Arrays (n, ...) of each component of its archetype, one for each time."""
+
+
+class _Lines(NamedTuple):
+    """Lines that have values at the same times."""
+
+    times: list[float]
+    """Simulated times [s]."""
+    values: list[NDArray[np.float64]]
+    """The value of each line, at each time."""
 
 
 class Log:
@@ -34,8 +43,8 @@ class Log:
         self.time = 0.0
         """Simulated time [s] of what is drawn now."""
         self._streams = streams
-        self._rows: dict[tuple[str, Any], list[_Row]] = {}
-        self._lines: dict[str, tuple[list[float], list[float]]] = {}
+        self._rows: dict[tuple[str, Any], _Rows] = {}
+        self._lines: dict[tuple[str, ...], _Lines] = {}
 
     def keep(self, entity: str, *data: Any) -> None:
         """Log what stays the same."""
@@ -57,17 +66,20 @@ class Log:
             parts: arrays (n, ...) of its components, as `positions`, copied; other rows of the same
                 entity have the same ones.
         """
-        arrays = {name: np.array(part) for name, part in parts.items()}
-        self._rows.setdefault((entity, archetype), []).append(_Row(self.time, arrays))
+        rows = self._rows.get((entity, archetype))
+        if rows is None:
+            rows = self._rows[entity, archetype] = _Rows([], {name: [] for name in parts})
+        rows.times.append(self.time)
+        for name, part in parts.items():
+            rows.parts[name].append(np.array(part))
 
-    def plot(self, entities: Iterable[str], values: Iterable[float]) -> None:
-        """Log the values of lines at the present time."""
-        for entity, value in zip(entities, values, strict=True):
-            line = self._lines.get(entity)
-            if line is None:
-                line = self._lines[entity] = ([], [])
-            line[0].append(self.time)
-            line[1].append(value)
+    def plot(self, entities: tuple[str, ...], values: ArrayLike) -> None:
+        """Log the values (n,) of lines at the present time."""
+        lines = self._lines.get(entities)
+        if lines is None:
+            lines = self._lines[entities] = _Lines([], [])
+        lines.times.append(self.time)
+        lines.values.append(np.array(values, float))
 
     def send(self) -> None:
         """Send what has been kept."""
@@ -81,9 +93,11 @@ class Log:
             return columns[key]
 
         for (entity, archetype), rows in self._rows.items():
-            self._send(entity, index(row.time for row in rows), _join(archetype, rows))
-        for entity, (times, values) in self._lines.items():
-            self._send(entity, index(times), rr.Scalars.columns(scalars=values))
+            self._send(entity, index(rows.times), _join(archetype, rows))
+        for entities, lines in self._lines.items():
+            times = index(lines.times)
+            for entity, values in zip(entities, np.transpose(lines.values), strict=True):
+                self._send(entity, times, rr.Scalars.columns(scalars=values))
         self._rows, self._lines = {}, {}
 
     def _send(self, entity: str, times: rr.TimeColumn, columns: Iterable[Any]) -> None:
@@ -92,8 +106,8 @@ class Log:
             stream.send_columns(entity, [times], columns)
 
 
-def _join(archetype: Any, rows: Sequence[_Row]) -> Any:
+def _join(archetype: Any, rows: _Rows) -> Any:
     """Rows of one entity as the columns of its archetype."""
-    arrays = {name: np.concatenate([row.parts[name] for row in rows]) for name in rows[0].parts}
-    lengths = [len(next(iter(row.parts.values()))) for row in rows]
+    lengths = [len(part) for part in next(iter(rows.parts.values()))]
+    arrays = {name: np.concatenate(parts) for name, parts in rows.parts.items()}
     return archetype.columns(**arrays).partition(lengths)

@@ -28,8 +28,9 @@ from buoyancy_mj.viz.tendons import TendonDrawing
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
 from buoyancy_mj.viz.water_surface import SurfaceDrawing
 
-FLUSH_EVERY = 0.25
-"""Time [s] between writes to the file; a run that is killed loses no more of its work."""
+FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
+"""Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
+more of its work."""
 CLOSER = 0.6
 """Distance of the eye from several vehicles over that from one as long as all of them."""
 
@@ -65,6 +66,7 @@ class Recording:
         self._texts = ("summary", "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
+        self._every = LIVE_EVERY if live else FLUSH_EVERY
         self._streams: list[rr.RecordingStream] = []
         self._file: RrdFile | None = None
         if path is not None:
@@ -97,11 +99,11 @@ class Recording:
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
         self._instruments = Instruments(run.model)
-        self._entities = [instruments.entity(one) for one in self._instruments.channels]
+        self._entities = tuple(map(instruments.entity, self._instruments.channels))
         self._forces = [
             ForceDrawing(vehicle, name, run.buoyancy.causes) for vehicle, name in self._vehicles()
         ]
-        self._lines: list[str] | None = None
+        self._lines: tuple[str, ...] | None = None
         self._draw_static()
 
     def __del__(self) -> None:
@@ -136,14 +138,14 @@ class Recording:
         # the plots, whose lines are the same in all frames
         values = [plots.values(vehicle, frame) for vehicle, _ in self._vehicles()]
         if self._lines is None:
-            self._lines = [
+            self._lines = tuple(
                 plots.entity(line, name)
                 for (_, name), lines in zip(self._vehicles(), values, strict=True)
                 for line in lines
-            ]
-        self._log.plot(self._lines, (value for lines in values for value in lines.values()))
-        self._log.plot(self._entities, self._instruments.read(frame.data).tolist())
-        if time.monotonic() - self._sent >= FLUSH_EVERY:
+            )
+        self._log.plot(self._lines, [value for lines in values for value in lines.values()])
+        self._log.plot(self._entities, self._instruments.read(frame.data))
+        if time.monotonic() - self._sent >= self._every:
             self._log.send()
             self._write()
             self._sent = time.monotonic()
