@@ -419,13 +419,14 @@ def test_a_full_disk_at_the_end_of_a_run_that_diverged_hides_neither(tmp_path, m
             raise RecordingError("the recording broke off: No space left on device; ...")
         return write(self)
 
-    def diverges(_):
+    def diverges(*_):
         raise DivergenceError("the simulation diverged")
 
     write = RrdFile.write
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(RrdFile, "write", full)
-    monkeypatch.setattr(Simulation, "step", diverges)
+    monkeypatch.setattr(Simulation, "advance", diverges)
+    monkeypatch.setattr(recording_module, "FLUSH_EVERY", float("inf"))
     arguments = shlex.split("run hourglass_drop_still --duration 0.2 --record run.rrd")
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 1

@@ -87,7 +87,6 @@ class Recording:
         """Draw what stays the same, and be ready for frames."""
         run = self.run
         self._log = Log(self._streams)
-        self._sent = time.monotonic()
         vehicles = run.vehicles.values()
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
@@ -105,6 +104,7 @@ class Recording:
         ]
         self._lines: tuple[str, ...] | None = None
         self._draw_static()
+        self._sent = time.monotonic()
 
     def __del__(self) -> None:
         # a stream that is dropped with data still in it may wait for ever
