@@ -122,7 +122,7 @@ def _descend(known, xpos, xmat, plane, least):
     return top
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 def _bound(known, xpos, xmat, plane, box):
     """Depth [m] that no corner in a box exceeds, by the plane that touches the surface at the root.
 
@@ -142,21 +142,21 @@ def _touch(known, x, y, time):
     return Plane(x, y, known.level + eta, along, across)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 def _corner(corners, n, origin, r):
     """A corner in the world [m]."""
     x, y, z = triple(corners, n, 0)
     return place(origin, r, x, y, z)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 def _under(plane, point):
     """Depth under a plane of a point [m]."""
     x, y, z = point
     return plane.height + plane.along * (x - plane.x) + plane.across * (y - plane.y) - z
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy")
 def _reach(known, xpos, xmat, plane, box):
     """Depth under a plane [m] of the deepest corner of a box itself."""
     boxes, body = known.boxes, known.spans[box, BODY]
