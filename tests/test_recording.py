@@ -166,7 +166,7 @@ from pathlib import Path
 from buoyancy_mj import RecordingError, Simulation, read_scene
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.viz.recording import Recording
-simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], ["duration=4"]))
+simulation = Simulation(read_scene(catalog.scenes()["auv_waves"], ["duration=8"]))
 recording = Recording(simulation, Path(sys.argv[1]))
 # a file may not grow beyond this: writing fails as on a full disk
 resource.setrlimit(resource.RLIMIT_FSIZE, (3_000_000, 3_000_000))
@@ -419,13 +419,14 @@ def test_a_full_disk_at_the_end_of_a_run_that_diverged_hides_neither(tmp_path, m
             raise RecordingError("the recording broke off: No space left on device; ...")
         return write(self)
 
-    def diverges(_):
+    def diverges(*_):
         raise DivergenceError("the simulation diverged")
 
     write = RrdFile.write
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(RrdFile, "write", full)
-    monkeypatch.setattr(Simulation, "step", diverges)
+    monkeypatch.setattr(Simulation, "advance", diverges)
+    monkeypatch.setattr(recording_module, "FLUSH_EVERY", float("inf"))
     arguments = shlex.split("run hourglass_drop_still --duration 0.2 --record run.rrd")
     result = CliRunner().invoke(app, arguments)
     assert result.exit_code == 1

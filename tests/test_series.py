@@ -232,7 +232,7 @@ def test_a_command_that_breaks_off_says_where_its_series_is(tmp_path, monkeypatc
         raise KeyboardInterrupt
 
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(Simulation, "step", interrupted)
+    monkeypatch.setattr(Simulation, "advance", interrupted)
     line = "run hourglass_drop_still --duration 0.1 --no-record --series run.csv"
     done = CliRunner().invoke(app, shlex.split(line))
     assert done.exit_code == 130

@@ -17,9 +17,6 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.summary import Summary
 
-WATCH_RATE = 100.0
-"""How often a summary takes draft and height [Hz]; autopilots step faster."""
-
 
 class Session:
     """A simulation with an autopilot that drives one of its vehicles.
@@ -55,8 +52,6 @@ class Session:
         self._pulses = PulseMap(simulation.model, channels)
         self._readings = Readings(simulation, vehicle)
         self._line = b""
-        self._steps = 0
-        self._stride = max(1, round(1.0 / (WATCH_RATE * simulation.model.opt.timestep)))
         self._recorded = 0.0
         self._wall_time = 0.0
 
@@ -149,8 +144,7 @@ class Session:
         simulation = self.simulation
         self._pulses.apply(servos.pulses, simulation.data.ctrl)
         for _ in range(substeps):
-            self._steps += 1
-            simulation.step(watch=self._steps % self._stride == 0)
+            simulation.step()
             self._readings.feel()
 
         # frames for recordings

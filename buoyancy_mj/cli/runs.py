@@ -1,6 +1,5 @@
 """`run`, `view` and `list`: one scene at a time."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated
 
@@ -24,7 +23,6 @@ from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.cli.summaries import mission_table, print_files, summary_json, summary_table
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
@@ -114,7 +112,7 @@ def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> 
 def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
     """Run to the end, and record; the files."""
     try:
-        _run_frames(simulation, recordings.add)
+        _run_frames(simulation, recordings)
         return recordings.close(simulation.summary())
     except BaseException:
         # whatever ends the run, what was recorded stays
@@ -122,12 +120,19 @@ def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
         raise
 
 
-def _run_frames(simulation: Simulation, add: Callable[[Frame], None]) -> None:
-    """Run to the end, calling `add` with each frame, and show the simulated time."""
+def _run_frames(simulation: Simulation, recordings: Recordings) -> None:
+    """Run to the end, recording each frame if anything is recorded; show the simulated time."""
     scene = simulation.scene
     columns = TextColumn("{task.completed:.1f} of {task.total:.1f} s"), TimeRemainingColumn()
     with show_progress(scene.title, scene.duration, *columns) as update:
-        for frame in simulation.frames():
+
+        def show(time: float) -> None:
             raise_received()
-            add(frame)
-            update(completed=frame.time)
+            update(completed=time)
+
+        if not recordings:
+            simulation.run(show)
+            return
+        for frame in simulation.frames():
+            show(frame.time)
+            recordings.add(frame)

@@ -130,7 +130,8 @@ class ActingWater:
                 f"this water has not acted on these data at their time, {data.time:g} s; "
                 "step them while it acts, call mj_forward, or use evaluate"
             )
-        if not np.array_equal(record.xipos, data.xipos, equal_nan=True):
+        # bit for bit, NaN too
+        if record.xipos.tobytes() != data.xipos.tobytes():
             raise EngineError(
                 "the bodies of these data are elsewhere than in the last pass of this water; "
                 "call mj_forward while it acts, or use evaluate"

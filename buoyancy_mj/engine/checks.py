@@ -97,7 +97,7 @@ def check_data(model: mujoco.MjModel, data: mujoco.MjData) -> None:
     """
     if not isinstance(data, mujoco.MjData):
         raise ModelError(f"data are {describe(data)}; give the mujoco.MjData of this water's model")
-    if data.model is model:
+    if data.model._address == model._address:
         return
     signatures = {model.signature, data.signature} - {0}
     pairs = {

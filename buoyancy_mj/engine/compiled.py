@@ -2,6 +2,7 @@
 
 import ctypes
 import functools
+import itertools
 import os
 import threading
 import weakref
@@ -146,7 +147,11 @@ class CompiledWater:
 
         It is gone too when a callback acted on `THREADS` others since.
         """
-        return next((record for record in self._all_records() if record.ids[DATA] == data), None)
+        places = np.flatnonzero(self._table.arrays.datas == data).tolist()
+        likely = [self._last[place].arrays for place in places]
+        alive = (record.arrays for record in self._records if record.arrays.ids[ALIVE])
+        records = itertools.chain(likely, alive)
+        return next((record for record in records if record.ids[DATA] == data), None)
 
     def forget(self, data: int) -> None:
         """Forget that: something else acts on the data."""

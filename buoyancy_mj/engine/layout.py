@@ -65,19 +65,24 @@ def offset(path: str) -> int:
     return total
 
 
+def size(name: str) -> int:
+    """Bytes of a struct, as 'mjContact'."""
+    return ctypes.sizeof(_struct(name))
+
+
 def content(path: str, address: int) -> bytes:
     """A copy of the array that a pointer field of a struct points to.
 
     The path is as 'mjModel.geom_size'; the struct is at an address.
     """
-    size, extent = _pointed(path)
+    length, extent = _pointed(path)
     for n in extent:
-        size *= (
+        length *= (
             n
             if isinstance(n, int)
             else ctypes.c_int64.from_address(address + offset(f"{path.split('.')[0]}.{n}")).value
         )
-    return ctypes.string_at(word(address + offset(path)), size) if size else b""
+    return ctypes.string_at(word(address + offset(path)), length) if length else b""
 
 
 def word(address: int) -> int:

@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 from buoyancy_mj.errors import DivergenceError
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import body_name
+from buoyancy_mj.kernels.arrays import conform
+from buoyancy_mj.kernels.watching import Bounds, count_calm, is_calm
 from buoyancy_mj.scenes.floors import Floors
 from buoyancy_mj.scenes.scene import Scene
-from buoyancy_mj.scenes.trajectory import Poses
+from buoyancy_mj.scenes.trajectory import Poses, Trajectory
 
 FASTEST = 1e3
 """Speed [m/s] beyond which nothing that floats, sinks or falls can move."""
@@ -21,6 +23,7 @@ QUANTITIES = {
     mujoco.mjtWarning.mjWARN_BADQACC: "acceleration",
 }
 """The quantity that is bad, by the warning that MuJoCo counts."""
+_BAD_VALUES = [int(warning) for warning in QUANTITIES]
 
 
 class Limits:
@@ -42,6 +45,16 @@ class Limits:
         self._start = data.xipos[self._bodies]
         self._floors = Floors(model, data, self._bodies)
         self._last: tuple[float, NDArray[np.float64]] | None = None
+        self.bounds = conform(
+            Bounds(
+                bodies=self._bodies,
+                start=self._start,
+                lowest=self._floors.lowest,
+                farthest=0.5 * FARTHEST,
+                fastest=0.01 * FASTEST,
+            )
+        )
+        """Within what most steps are, far from all limits, so that compiled code passes them."""
 
     def check_data(self, data: mujoco.MjData, time: float) -> None:
         """Check data after a step or mj_forward, whose poses are those at a time [s].
@@ -50,21 +63,23 @@ class Limits:
             DivergenceError: a limit is passed; the error names the body and the quantity.
         """
         check_finite(self._scene, self._model, data)
+        if is_calm(self.bounds, data.xipos, data.cvel):
+            return
         bodies = self._bodies
         centres = data.xipos[bodies]
-        if self._is_calm(centres, data):
-            return
         arms = centres - data.subtree_com[self._model.body_rootid[bodies]]
         velocities = data.cvel[bodies, 3:] + np.cross(data.cvel[bodies, :3], arms)
         self._check(centres, velocities, time)
 
-    def _is_calm(self, centres: NDArray[np.float64], data: mujoco.MjData) -> bool:
-        """Whether all is far from all limits; a quick look that most steps need no more than."""
-        return bool(
-            np.abs(data.cvel).max() < 0.01 * FASTEST
-            and np.abs(centres - self._start).max() < 0.5 * FARTHEST
-            and not self._floors.is_low(centres)
-        )
+    def check_trajectory(self, trajectory: Trajectory, timestep: float) -> None:
+        """Check the poses of a run that was stepped elsewhere, one timestep [s] apart from 0 s.
+
+        Raises:
+            DivergenceError: a limit is passed; the error names the body and the quantity.
+        """
+        calm = count_calm(self.bounds, trajectory.xipos, timestep)
+        for step in range(max(0, calm - 1), len(trajectory.qpos)):
+            self.check_poses(trajectory.poses(step), step * timestep)
 
     def check_poses(self, poses: Poses, time: float) -> None:
         """Check the next poses of a run that was stepped elsewhere, at a time [s].
@@ -116,6 +131,8 @@ def check_finite(scene: Scene, model: mujoco.MjModel, data: mujoco.MjData) -> No
     Raises:
         DivergenceError: it has; the error names the body and the quantity.
     """
+    if not data.warning.number[_BAD_VALUES].any():
+        return
     for warning, quantity in QUANTITIES.items():
         counter = data.warning[warning]
         if counter.number:

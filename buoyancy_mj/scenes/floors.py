@@ -39,10 +39,11 @@ class Floors:
         self._watched = [
             group for group in groups if any(self._is_above(centre) for centre in centres[group])
         ]
+        self.lowest = np.array(self._ceiling)
+        """Height [m] of each body's centre of mass (n,) under which it may have fallen through.
 
-    def is_low(self, centres: NDArray[np.float64]) -> bool:
-        """Whether any body, by its centre of mass (n, 3) [m], is so low that it may have fallen."""
-        return bool(self._watched) and bool((centres[:, 2] < self._ceiling).any())
+        It is minus infinity for all when nobody is watched any more."""
+        self._give_up()
 
     def find_fallen(self, centres: NDArray[np.float64]) -> int | None:
         """The first of bodies that have fallen through, by its place among those watched, or None.
@@ -56,7 +57,13 @@ class Floors:
                 return int(group[0])
             # they went over an edge, and may go on
             self._watched = [other for other in self._watched if other is not group]
+            self._give_up()
         return None
+
+    def _give_up(self) -> None:
+        """Let nobody be low where nobody is watched."""
+        if not self._watched:
+            self.lowest[:] = -np.inf
 
     def _is_above(self, point: NDArray[np.float64]) -> bool:
         """Whether a floor lies under a point (3,) [m]."""

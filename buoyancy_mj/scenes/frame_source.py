@@ -49,6 +49,18 @@ class FrameSource:
         mujoco.mj_getState(self._model, data, self._state, _STATE)
         mujoco.mj_setState(self._model, self.data, self._state, _STATE)
 
+    def see(self, running: mujoco.MjData, forward: Callable[[mujoco.MjData], None]) -> None:
+        """Let the monitors have the present of running data, without a frame.
+
+        Args:
+            running: the data.
+            forward: as for `take`.
+        """
+        self.copy_state(running)
+        forward(self.data)
+        for monitor in self.monitors.values():
+            monitor.add_poses(poses_of(self.data), float(self.data.time))
+
     def take(self, running: mujoco.MjData, forward: Callable[[mujoco.MjData], None]) -> Frame:
         """The present of running data: poses and loads at exactly its time.
 
@@ -57,13 +69,10 @@ class FrameSource:
             forward: makes a pass over the data of the frames, with the water at work; what it
                 raises ends the frame.
         """
+        self.see(running, forward)
         data = self.data
-        self.copy_state(running)
-        forward(data)
         now = float(data.time)
         loads = self._buoyancy.loads(data)
-        for monitor in self.monitors.values():
-            monitor.add_poses(poses_of(data), now)
         return Frame(
             time=now,
             data=data,

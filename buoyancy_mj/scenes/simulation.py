@@ -25,12 +25,16 @@ from buoyancy_mj.scenes.divergence import Limits
 from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles
 from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.frames import Frame, take_only
+from buoyancy_mj.scenes.lookout import Lookout
 from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.steering import Steering
 from buoyancy_mj.scenes.summary import LAST, Summary
 from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
 from buoyancy_mj.vehicle.control.controller import Controller
+
+BLOCK_TIME = 0.1
+"""About how long `run` steps before it tells where it is [s]."""
 
 
 class Simulation(ReadOnly):
@@ -58,7 +62,6 @@ class Simulation(ReadOnly):
         self.model, self.data, afloat = assemble(scene, with_water=through == PASSIVE)
         # a diverging simulation ends with an error, and is not set back to its start
         self.model.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
-        self.model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
 
         # the water, in the model or lent to MuJoCo for each step
         self.buoyancy: Buoyancy
@@ -83,6 +86,8 @@ class Simulation(ReadOnly):
             mujoco.mj_fwdPosition(self.model, start)
         warn_of_obstacles(self.model, start, self.vehicles, scene.water.level)
         self._limits = Limits(scene, self.model, start)
+        self._lookout = Lookout(self.data, self._limits, self._source.monitors.values())
+        self._is_seen = True
         self._wall_time = 0.0
 
         # who watches
@@ -157,24 +162,44 @@ class Simulation(ReadOnly):
         """
         started = time.perf_counter()
         yield self.frame()
-        recorded = 0
-        for step in range(1, self.steps + 1):
-            self.step()
-            # the small part forgives the rounding of time * rate
-            due = math.floor(step * self.scene.timestep * self.scene.record_rate + 1e-9)
-            if due > recorded or step == self.steps:
-                recorded = due
-                frame = self.frame()
-                self._wall_time = time.perf_counter() - started
-                yield frame
+        taken = 0
+        for due in self._list_frames():
+            self.advance(due - taken)
+            taken = due
+            frame = self.frame()
+            self._wall_time = time.perf_counter() - started
+            yield frame
         self._wall_time = time.perf_counter() - started
 
-    def step(self, *, watch: bool = True) -> None:
-        """Take one timestep with the water acting, steered by the controllers that are due.
+    def run(self, each: Callable[[float], object] = float) -> Summary:
+        """Run the scene to its end without frames, and sum it up; nothing costs less.
 
         Args:
-            watch: whether the summary takes draft and height of this step, which costs as much as a
-                small model's step.
+            each: called with the simulated time [s] some ten times in a second.
+
+        Raises:
+            DivergenceError: as `frames`.
+
+        Example:
+            `peak = Simulation(read_scene(path)).run().peak_draft`
+        """
+        started = time.perf_counter()
+        taken = count = 0
+        while taken < self.steps:
+            count = min(max(1, count), self.steps - taken)
+            begun = time.perf_counter()
+            self.advance(count)
+            taken += count
+            each(float(self.data.time))
+            # twice as many until they take long enough
+            count = int(count * min(2.0, BLOCK_TIME / (time.perf_counter() - begun)))
+        self._source.see(self.data, self._forward)
+        self._is_seen = True
+        self._wall_time = time.perf_counter() - started
+        return self.summary()
+
+    def step(self) -> None:
+        """Take one timestep with the water acting, steered by the controllers that are due.
 
         Raises:
             ControlError: a controller raises, or gives what is no finite number.
@@ -182,21 +207,42 @@ class Simulation(ReadOnly):
                 reason: see `Limits`.
             KeyboardInterrupt: Ctrl-C, also while Python code submerges.
         """
-        if self._steering is not None:
-            self._steering.update(self.data)
-        with self._lend_water(), raise_causes():
-            mujoco.mj_step(self.model, self.data)
+        self.advance(1)
 
-        # a step leaves the poses of its beginning
-        now = float(self.data.time)
-        before = now - self.model.opt.timestep
-        self._limits.check_data(self.data, before)
-        for monitor in self._source.monitors.values():
-            if watch:
-                monitor.add_poses(poses_of(self.data), before)
-            monitor.add_contacts(self.data, now)
-        if self.mission is not None:
-            self.mission.update()
+    def advance(self, count: int) -> None:
+        """Take timesteps, as `step` does, with next to nothing between them.
+
+        Args:
+            count: how many.
+
+        Raises:
+            ControlError, DivergenceError, KeyboardInterrupt: as `step`.
+        """
+        steering, mission = self._steering, self.mission
+        left = count
+        while left:
+            # natively as far as nobody has to be asked
+            some = left if mission is None else 1
+            if steering is not None:
+                some = min(some, steering.update(self.data))
+            self._step_natively(some)
+            left -= some
+            if steering is not None:
+                steering.note_steps(some)
+            if mission is not None:
+                mission.update()
+
+    def _step_natively(self, count: int) -> None:
+        """Take timesteps with the water acting, and see what each leaves."""
+        model, data, step, look = self.model, self.data, mujoco.mj_step, self._lookout.look
+        self._lookout.reserve(count)
+        self._is_seen = False
+        with self._lend_water(), raise_causes():
+            for _ in range(count):
+                before = data.time
+                step(model, data)
+                # a step leaves the poses of its beginning
+                look(before, data.time)
 
     def replay(self, trajectory: Trajectory, wall_time: float) -> None:
         """Take over a whole run that was stepped elsewhere, for the summary.
@@ -211,17 +257,15 @@ class Simulation(ReadOnly):
         timestep = self.model.opt.timestep
 
         # each step; contacts are found anew, from the coordinates at its beginning
+        self._limits.check_trajectory(trajectory, timestep)
+        for monitor in self._source.monitors.values():
+            monitor.add_trajectory(trajectory, timestep)
         starts = np.vstack([self.data.qpos[None], trajectory.qpos])
-        for step, poses in enumerate(trajectory.poses):
-            now = step * timestep
-            self._limits.check_poses(poses, now)
+        for step in np.flatnonzero(trajectory.ncon):
+            self._source.data.qpos[:] = starts[step]
+            mujoco.mj_fwdPosition(self.model, self._source.data)
             for monitor in self._source.monitors.values():
-                monitor.add_poses(poses, now)
-            if trajectory.ncon[step]:
-                self._source.data.qpos[:] = starts[step]
-                mujoco.mj_fwdPosition(self.model, self._source.data)
-                for monitor in self._source.monitors.values():
-                    monitor.add_contacts(self._source.data, now + timestep)
+                monitor.add_contacts(self._source.data, float(step + 1) * timestep)
 
         # the end
         self.data.qpos[:] = trajectory.qpos[-1]
@@ -240,11 +284,18 @@ class Simulation(ReadOnly):
             DivergenceError: a position, velocity or acceleration left the finite numbers, or all
                 reason: see `Limits`.
         """
-        return self._source.take(self.data, self._forward)
+        frame = self._source.take(self.data, self._forward)
+        self._is_seen = True
+        return frame
 
     def summary(self) -> Summary:
         """Sum up the run so far."""
         end = float(self.data.time)
+        if not self._is_seen:
+            # the draft in the poses that the last step left
+            for monitor in self._source.monitors.values():
+                monitor.add_poses(poses_of(self.data), end - self.model.opt.timestep)
+            self._is_seen = True
         at_limits = {} if self._steering is None else self._steering.at_limits
         return Summary(
             scene=self.scene.title,
@@ -257,6 +308,15 @@ class Simulation(ReadOnly):
             wall_time=self._wall_time,
             real_time_factor=end / self._wall_time if self._wall_time else math.nan,
         )
+
+    def _list_frames(self) -> Iterator[int]:
+        """The steps after which frames are due: at the record rate, and the last."""
+        taken = np.arange(1, self.steps + 1)
+        # the small part forgives the rounding of time * rate
+        due = np.floor(taken * self.scene.timestep * self.scene.record_rate + 1e-9)
+        is_due = np.diff(due, prepend=0.0) > 0.0
+        is_due[-1] = True
+        yield from taken[is_due].tolist()
 
     def centre_of_mass(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """Centre of mass (3,) [m] of the only vehicle, world frame."""
@@ -275,7 +335,9 @@ class Simulation(ReadOnly):
         )
 
     def _forward(self, data: mujoco.MjData) -> None:
-        """A pass over the data of a frame, which may have left all reason."""
+        """A pass over the data of a frame, which may have left all reason; their energy too."""
         with self._lend_water(), raise_causes():
             mujoco.mj_forward(self.model, data)
+        mujoco.mj_energyPos(self.model, data)
+        mujoco.mj_energyVel(self.model, data)
         self._limits.check_data(data, float(data.time))

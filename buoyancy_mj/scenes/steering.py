@@ -96,8 +96,11 @@ class Steering:
                 )
                 self._helms.append(_take_helm(control, vehicle, outset))
 
-    def update(self, data: mujoco.MjData) -> None:
+    def update(self, data: mujoco.MjData) -> int:
         """Let the controllers that are due write their controls, before the next step.
+
+        Returns:
+            How many steps may be taken, and told to `note_steps`, before the next is due.
 
         Raises:
             ControlError: a controller raises, or gives what is no finite number.
@@ -105,7 +108,11 @@ class Steering:
         for helm in self._helms:
             if self._done % helm.steps == 0:
                 self._call(helm, data)
-        self._done += 1
+        return min(helm.steps - self._done % helm.steps for helm in self._helms)
+
+    def note_steps(self, count: int) -> None:
+        """Note that steps have been taken since the last update."""
+        self._done += count
 
     @property
     def controllers(self) -> dict[str, Controller]:

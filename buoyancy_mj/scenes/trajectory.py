@@ -1,6 +1,5 @@
 """Poses of the bodies of a model, at one instant and over a whole run."""
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import mujoco
@@ -38,7 +37,6 @@ class Trajectory(NamedTuple):
     ncon: NDArray[np.int32]
     """Number of contacts in each step (steps,)."""
 
-    @property
-    def poses(self) -> Iterator[Poses]:
-        """The poses at the beginning of each step."""
-        return map(Poses, self.xpos, self.xmat, self.xipos)
+    def poses(self, step: int) -> Poses:
+        """The poses at the beginning of a step."""
+        return Poses(self.xpos[step], self.xmat[step], self.xipos[step])

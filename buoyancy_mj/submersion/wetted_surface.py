@@ -1,5 +1,7 @@
 """The wetted surface of a mesh as triangles, and its waterline: what an eye would see wet."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,34 +30,74 @@ def cut_wetted_surface(
     Returns:
         Triangles (n, 3, 3) and pieces of the waterline (k, 2, 3) [m], world frame.
     """
-    # depths of all corners
-    points = mesh.vertices @ np.asarray(rotation, float).reshape(3, 3).T + position
-    depths = water.depth(points, time)
-    corners, d = points[mesh.faces], depths[mesh.faces]
-    wet = d > 0.0
-    count = wet.sum(axis=1)
-
-    # turn each face that is cut so that the corner alone on its side comes first
-    cut = (count == 1) | (count == 2)
-    alone = np.argmax(wet[cut] == (count[cut] == 1)[:, None], axis=1)
-    order = (alone[:, None] + np.arange(3)) % 3
-    p = np.take_along_axis(corners[cut], order[:, :, None], axis=1)
-    q = np.take_along_axis(d[cut], order, axis=1)
-
-    # the ends of its waterline
-    s = q[:, 0] / (q[:, 0] - q[:, 1])
-    t = q[:, 0] / (q[:, 0] - q[:, 2])
-    a = p[:, 0] + s[:, None] * (p[:, 1] - p[:, 0])
-    b = p[:, 0] + t[:, None] * (p[:, 2] - p[:, 0])
+    cut = _cut_faces(mesh, position, rotation, water, time)
+    p, (a, b), one = cut.corners, cut.ends, cut.wet_corners == 1
 
     # whole faces; of those cut a triangle with one corner wet, a quadrangle with two
-    one = count[cut] == 1
     triangles = np.concatenate(
         [
-            corners[count == 3],
+            cut.points[mesh.faces[cut.whole]],
             np.stack([p[:, 0], a, b], axis=1)[one],
             np.stack([a, p[:, 1], p[:, 2]], axis=1)[~one],
             np.stack([a, p[:, 2], b], axis=1)[~one],
         ]
     )
     return triangles, np.stack([a, b], axis=1)
+
+
+def cut_waterline(
+    mesh: TriMesh,
+    position: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    water: Water,
+    time: float,
+) -> NDArray[np.float64]:
+    """The pieces of the waterline (k, 2, 3) [m] that `cut_wetted_surface` gives, alone."""
+    return np.stack(_cut_faces(mesh, position, rotation, water, time).ends, axis=1)
+
+
+class _Cut(NamedTuple):
+    """A mesh in the water, and those of its faces that the surface cuts."""
+
+    points: NDArray[np.float64]
+    """Corners of the mesh (n, 3) [m], world frame."""
+    whole: NDArray[np.bool_]
+    """Whether each face is under water."""
+    corners: NDArray[np.float64]
+    """Of the faces that are cut (k, 3, 3) [m], that alone on its side first."""
+    wet_corners: NDArray[np.int64]
+    """How many of them are wet (k,), 1 or 2."""
+    ends: tuple[NDArray[np.float64], NDArray[np.float64]]
+    """Ends of the waterline on each, (k, 3) [m]."""
+
+
+def _cut_faces(
+    mesh: TriMesh,
+    position: NDArray[np.float64],
+    rotation: NDArray[np.float64],
+    water: Water,
+    time: float,
+) -> _Cut:
+    """Cut faces where the depth, linear on each, is zero."""
+    # depths of all corners
+    points = mesh.vertices @ np.asarray(rotation, float).reshape(3, 3).T + position
+    depths = water.depth(points, time)
+    one, two, three = (depths > 0.0)[mesh.faces.T]
+    whole = one & two & three
+    cut = np.flatnonzero((one | two | three) & ~whole)
+    corners, d = points[mesh.faces[cut]], depths[mesh.faces[cut]]
+    wet = d > 0.0
+    count = wet.sum(axis=1)
+
+    # turn each face that is cut so that the corner alone on its side comes first
+    alone = np.argmax(wet == (count == 1)[:, None], axis=1)
+    order = (alone[:, None] + np.arange(3)) % 3
+    p = np.take_along_axis(corners, order[:, :, None], axis=1)
+    q = np.take_along_axis(d, order, axis=1)
+
+    # the ends of its waterline
+    s = q[:, 0] / (q[:, 0] - q[:, 1])
+    t = q[:, 0] / (q[:, 0] - q[:, 2])
+    a = p[:, 0] + s[:, None] * (p[:, 1] - p[:, 0])
+    b = p[:, 0] + t[:, None] * (p[:, 2] - p[:, 0])
+    return _Cut(points, whole, p, count, (a, b))

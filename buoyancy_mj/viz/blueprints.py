@@ -6,7 +6,8 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from buoyancy_mj.viz.plots import TIMELINE, list_plots
+from buoyancy_mj.viz.log import TIMELINE
+from buoyancy_mj.viz.plots import list_plots
 
 MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
 """Names of the tabs of plots."""

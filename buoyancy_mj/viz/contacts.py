@@ -31,24 +31,29 @@ class ContactDrawing:
             arrow_scale(run.vehicles.values(), body) for body in range(int(model.nbody))
         ]
         self._shown = 0
+        self._is_styled = False
 
     def draw(self, log: Log, frame: Frame) -> None:
         """Draw each contact as a point, and its force on what moves as an arrow."""
         data = frame.data
         if not data.ncon and not self._shown:
             return
+        if not self._is_styled:
+            self._draw_style(log)
         self._shown = data.ncon
         positions = data.contact.pos
         vectors = np.zeros((data.ncon, 3))
         for contact in range(data.ncon):
             force, body = find_force(self._model, data, contact, self._moves)
             vectors[contact] = self._scales[body] * force
-        points = rr.Points3D(positions, colors=[COLOUR], radii=[0.01 * self._size])
-        log(POINTS, points)
-        arrows = rr.Arrows3D(
-            origins=positions, vectors=vectors, colors=[COLOUR], radii=[0.008 * self._size]
-        )
-        log(FORCES, arrows)
+        log.draw(POINTS, rr.Points3D, positions=positions)
+        log.draw(FORCES, rr.Arrows3D, origins=positions, vectors=vectors)
+
+    def _draw_style(self, log: Log) -> None:
+        """Draw what stays the same: colours and radii."""
+        self._is_styled = True
+        log.keep(POINTS, rr.Points3D.from_fields(colors=[COLOUR], radii=[0.01 * self._size]))
+        log.keep(FORCES, rr.Arrows3D.from_fields(colors=[COLOUR], radii=[0.008 * self._size]))
 
 
 def find_force(

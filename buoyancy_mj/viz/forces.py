@@ -1,8 +1,9 @@
-"""Centres of gravity and buoyancy, and the forces on a vehicle, in a recording."""
+"""`ForceDrawing`: the centres of a vehicle and the forces on it, in a recording."""
+
+from collections.abc import Sequence
 
 import numpy as np
 import rerun as rr
-from numpy.typing import NDArray
 
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
@@ -10,62 +11,62 @@ from buoyancy_mj.viz.framing import arrow_scale
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.plots import COLOURS, NEUTRAL
 
-
-def draw_centres(log: Log, vehicle: Vehicle, frame: Frame, name: str = "") -> None:
-    """Draw a centre of gravity, and the centres of buoyancy of all hulls and of each.
-
-    Args:
-        log: draws.
-        vehicle: the vehicle.
-        frame: the instant.
-        name: what tells the vehicle from others; '' for the only one.
-    """
-    seen = frame.vehicles[vehicle.name]
-    wet = vehicle.rows[frame.loads.hull.volume[vehicle.rows] > 0.0]
-    total = seen.centre_of_buoyancy[None] if len(wet) else np.zeros((0, 3))
-    for part, points, cause, radius in (
-        ("gravity", [seen.centre_of_mass], "weight", 0.02),
-        ("buoyancy_of_hulls", frame.loads.hull.centroid[wet], "buoyancy", 0.01),
-        ("buoyancy", total, "buoyancy", 0.02),
-    ):
-        spheres = rr.Points3D(points, colors=[COLOURS[cause]], radii=[radius * vehicle.length])
-        log(_entity("centres", name, part), spheres)
+_CENTRES = {
+    "gravity": ("weight", 0.02),
+    "buoyancy_of_hulls": ("buoyancy", 0.01),
+    "buoyancy": ("buoyancy", 0.02),
+}
+"""The force whose colour each centre has, and its radius over the length of the vehicle."""
 
 
-def draw_forces(log: Log, vehicle: Vehicle, frame: Frame, name: str = "") -> None:
-    """Draw an arrow for each force, half as long as the vehicle for its weight.
+class ForceDrawing:
+    """The centres of gravity and of buoyancy of a vehicle, and an arrow for each force.
 
     Args:
-        log: draws.
         vehicle: the vehicle.
-        frame: the instant.
-        name: what tells the vehicle from others; '' for the only one.
+        name: what tells it from others; '' for the only one.
+        causes: names of the loads that act.
     """
-    size = vehicle.length
-    seen = frame.vehicles[vehicle.name]
-    centre = seen.centre_of_mass
-    origin = seen.centre_of_buoyancy if seen.volume > 0.0 else centre
-    scale = arrow_scale([vehicle], vehicle.root)
-    down = np.array([0.0, 0.0, -vehicle.weight])
-    _draw_arrow(log, _entity("forces", name, "weight"), centre, scale * down, size)
-    for cause, force in seen.forces.items():
-        _draw_arrow(log, _entity("forces", name, cause), origin, scale * force, size)
+
+    def __init__(self, vehicle: Vehicle, name: str, causes: Sequence[str]) -> None:
+        self._vehicle, self._causes = vehicle, tuple(causes)
+        self._centres = {part: _entity("centres", name, part) for part in _CENTRES}
+        self._forces = {
+            cause: _entity("forces", name, cause) for cause in ("weight", *self._causes)
+        }
+        # the weight of a vehicle is half as long as the vehicle
+        self._scale = arrow_scale([vehicle], vehicle.root)
+        self._weight = np.array([[0.0, 0.0, -self._scale * vehicle.weight]])
+
+    def draw_static(self, log: Log) -> None:
+        """Draw what stays the same: colours and radii."""
+        length = self._vehicle.length
+        for part, (cause, radius) in _CENTRES.items():
+            style = rr.Points3D.from_fields(colors=[COLOURS[cause]], radii=[radius * length])
+            log.keep(self._centres[part], style)
+        for cause, entity in self._forces.items():
+            colour = COLOURS.get(cause, NEUTRAL)
+            log.keep(entity, rr.Arrows3D.from_fields(colors=[colour], radii=[0.012 * length]))
+
+    def draw(self, log: Log, frame: Frame) -> None:
+        """Draw one frame: the centres, those of wet hulls too, and the forces."""
+        seen, hull = frame.vehicles[self._vehicle.name], frame.loads.hull
+        wet = self._vehicle.rows[hull.volume[self._vehicle.rows] > 0.0]
+        gravity = seen.centre_of_mass[None]
+        buoyancy = seen.centre_of_buoyancy[None] if len(wet) else np.zeros((0, 3))
+        log.draw(self._centres["gravity"], rr.Points3D, positions=gravity)
+        log.draw(self._centres["buoyancy_of_hulls"], rr.Points3D, positions=hull.centroid[wet])
+        log.draw(self._centres["buoyancy"], rr.Points3D, positions=buoyancy)
+
+        # forces
+        origin = seen.centre_of_buoyancy[None] if seen.volume > 0.0 else gravity
+        log.draw(self._forces["weight"], rr.Arrows3D, origins=gravity, vectors=self._weight)
+        for cause in self._causes:
+            vector = self._scale * seen.forces[cause][None]
+            log.draw(self._forces[cause], rr.Arrows3D, origins=origin, vectors=vector)
 
 
 def _entity(kind: str, vehicle: str, part: str) -> str:
     """The entity of something that belongs to a vehicle; it ends with what it shows."""
     owner = [rr.escape_entity_path_part(vehicle)] if vehicle else []
     return "/".join(["world", kind, *owner, part])
-
-
-def _draw_arrow(
-    log: Log, entity: str, origin: NDArray[np.float64], vector: NDArray[np.float64], size: float
-) -> None:
-    """Draw an arrow from a point (3,) [m] along a vector (3,) [m]."""
-    arrow = rr.Arrows3D(
-        origins=[origin],
-        vectors=[vector],
-        colors=[COLOURS.get(entity.rsplit("/", 1)[-1], NEUTRAL)],
-        radii=[0.012 * size],
-    )
-    log(entity, arrow)

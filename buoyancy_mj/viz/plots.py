@@ -12,8 +12,6 @@ from buoyancy_mj.scenes.frames import Frame
 Colour = tuple[int, int, int]
 Line = tuple[str, ...]
 """Name of a line: its plot first, the text of the legend last."""
-TIMELINE = "sim_time"
-"""Name of the timeline of simulated time [s]."""
 COLOURS: Mapping[str, Colour] = {
     "weight": (235, 200, 40),
     "buoyancy": (60, 160, 255),

@@ -1,10 +1,10 @@
 """`Recording`: a run as Rerun data, in a file, in a live viewer, or in both."""
 
+import time
 import uuid
 import warnings
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -19,16 +19,18 @@ from buoyancy_mj.viz import instruments, plots
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
-from buoyancy_mj.viz.forces import draw_centres, draw_forces
+from buoyancy_mj.viz.forces import ForceDrawing
 from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
 from buoyancy_mj.viz.live_viewer import open_viewer
+from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.rrd import RrdFile
 from buoyancy_mj.viz.tendons import TendonDrawing
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
 from buoyancy_mj.viz.water_surface import SurfaceDrawing
 
-FLUSH_EVERY = 0.25
-"""Simulated time [s] between writes to the file; a run that is killed loses no more."""
+FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
+"""Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
+more of its work."""
 CLOSER = 0.6
 """Distance of the eye from several vehicles over that from one as long as all of them."""
 
@@ -64,6 +66,7 @@ class Recording:
         self._texts = ("summary", "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
+        self._every = LIVE_EVERY if live else FLUSH_EVERY
         self._streams: list[rr.RecordingStream] = []
         self._file: RrdFile | None = None
         if path is not None:
@@ -83,8 +86,7 @@ class Recording:
     def _begin(self) -> None:
         """Draw what stays the same, and be ready for frames."""
         run = self.run
-        self._times: list[float] = []
-        self._lines: dict[str, list[float]] = {}
+        self._log = Log(self._streams)
         vehicles = run.vehicles.values()
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
@@ -96,8 +98,13 @@ class Recording:
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
         self._instruments = Instruments(run.model)
-        self._entities = [instruments.entity(one) for one in self._instruments.channels]
+        self._entities = tuple(map(instruments.entity, self._instruments.channels))
+        self._forces = [
+            ForceDrawing(vehicle, name, run.buoyancy.causes) for vehicle, name in self._vehicles()
+        ]
+        self._lines: tuple[str, ...] | None = None
         self._draw_static()
+        self._sent = time.monotonic()
 
     def __del__(self) -> None:
         # a stream that is dropped with data still in it may wait for ever
@@ -119,28 +126,29 @@ class Recording:
             RecordingError: the disk is full or the file was taken away; what was written stays.
         """
         # the picture
-        for stream in self._streams:
-            stream.set_time(plots.TIMELINE, duration=frame.time)
+        self._log.time = frame.time
         self._bodies.draw(self._log, frame)
         middle = find_middle(one.centre_of_mass for one in frame.vehicles.values())
         self._surface.draw(self._log, middle, frame.time)
-        for vehicle, name in self._vehicles():
-            draw_centres(self._log, vehicle, frame, name)
-            draw_forces(self._log, vehicle, frame, name)
+        for forces in self._forces:
+            forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
             drawing.draw(self._log, frame)
 
-        # the plots, as columns of many frames
-        self._times.append(frame.time)
-        for vehicle, name in self._vehicles():
-            for line, value in plots.values(vehicle, frame).items():
-                self._lines.setdefault(plots.entity(line, name), []).append(value)
-        readings = self._instruments.read(frame.data).tolist()
-        for entity, value in zip(self._entities, readings, strict=True):
-            self._lines.setdefault(entity, []).append(value)
-        if self._times[-1] - self._times[0] >= FLUSH_EVERY:
-            self._send_lines()
+        # the plots, whose lines are the same in all frames
+        values = [plots.values(vehicle, frame) for vehicle, _ in self._vehicles()]
+        if self._lines is None:
+            self._lines = tuple(
+                plots.entity(line, name)
+                for (_, name), lines in zip(self._vehicles(), values, strict=True)
+                for line in lines
+            )
+        self._log.plot(self._lines, [value for lines in values for value in lines.values()])
+        self._log.plot(self._entities, self._instruments.read(frame.data))
+        if time.monotonic() - self._sent >= self._every:
+            self._log.send()
             self._write()
+            self._sent = time.monotonic()
 
     def close(self, summary: Summary | None = None, *, complete: bool = True) -> Path | None:
         """Send what is buffered, add the summary, and give the file its name.
@@ -158,7 +166,7 @@ class Recording:
         """
         if summary is not None:
             self._log_text("summary", _summary_text(summary))
-        self._send_lines()
+        self._log.send()
         try:
             for stream in self._streams:
                 stream.flush(timeout_sec=60.0)
@@ -190,10 +198,12 @@ class Recording:
         )
         for stream in self._streams:
             stream.send_blueprint(layout)
-        self._log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        self._log.keep("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._log_text("scene", f"```toml\n{run.text}\n```")
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
+        for forces in self._forces:
+            forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)
 
         # the style of each line
@@ -201,9 +211,9 @@ class Recording:
         for vehicle, name in self._vehicles():
             styles = plots.styles(causes, [hull.name for hull in vehicle.hulls])
             for line, style in styles.items():
-                self._log(plots.entity(line, name), style, static=True)
+                self._log.keep(plots.entity(line, name), style)
         for entity, style in instruments.styles(channels).items():
-            self._log(entity, style, static=True)
+            self._log.keep(entity, style)
         self._write()
 
     def _vehicles(self) -> Iterator[tuple[Vehicle, str]]:
@@ -211,25 +221,9 @@ class Recording:
         for name, vehicle in self.run.vehicles.items():
             yield vehicle, name if self._several else ""
 
-    def _log(self, entity: str, *data: Any, static: bool = False) -> None:
-        """Log data to all streams."""
-        for stream in self._streams:
-            stream.log(entity, *data, static=static)
-
     def _log_text(self, entity: str, text: str) -> None:
         """Log a text in Markdown."""
-        self._log(entity, rr.TextDocument(text, media_type="text/markdown"), static=True)
-
-    def _send_lines(self) -> None:
-        """Send the values of all lines that have not been sent."""
-        if not self._times:
-            return
-        times = rr.TimeColumn(plots.TIMELINE, duration=self._times)
-        for entity, values in self._lines.items():
-            for stream in self._streams:
-                stream.send_columns(entity, [times], rr.Scalars.columns(scalars=values))
-        self._times = []
-        self._lines = {}
+        self._log.keep(entity, rr.TextDocument(text, media_type="text/markdown"))
 
     def _write(self) -> None:
         """Write what has been logged to the file."""

@@ -41,7 +41,7 @@ class TendonDrawing:
                 strips.append(strip)
                 colours.append((255.0 * rgba).astype(np.uint8))
                 radii.append(float(self._model.tendon_width[tendon]))
-        log(ENTITY, rr.LineStrips3D(strips, colors=colours, radii=radii))
+        log.draw_now(ENTITY, rr.LineStrips3D(strips, colors=colours, radii=radii))
 
 
 def find_path(data: mujoco.MjData, tendon: int) -> list[NDArray[np.float64]]:

@@ -48,14 +48,14 @@ class ThrusterDrawing:
             style = rr.Arrows3D.from_fields(
                 colors=[COLOUR], radii=[0.012 * self._size], labels=self._names, show_labels=False
             )
-            log(ENTITY, style, static=True)
+            log.keep(ENTITY, style)
 
     def draw(self, log: Log, frame: Frame) -> None:
         """Draw an arrow for each force; a quarter of the vehicle's weight is half its length."""
         if len(self._actuators):
             vectors = self._scales[:, None] * self.find_forces(frame.data)
             origins = frame.data.site_xpos[self._sites]
-            log(ENTITY, rr.Arrows3D.from_fields(origins=origins, vectors=vectors))
+            log.draw(ENTITY, rr.Arrows3D, origins=origins, vectors=vectors)
 
     def find_forces(self, data: mujoco.MjData) -> NDArray[np.float64]:
         """The forces (n, 3) [N], world frame: actuator_force times gear, along the site's axes."""

@@ -2,12 +2,13 @@
 
 import dataclasses
 import os
+import functools
 import statistics
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import mujoco
@@ -146,33 +147,58 @@ def describe_batch(results: Results) -> Iterator[str]:
 # whole runs
 
 
-def measure_real_time(_quick: bool) -> dict[str, float]:
-    """Measure simulated over wall time of a scene, without and with a recording at its rate."""
+def measure_real_time(_quick: bool) -> Results:
+    """Measure simulated over processor time of scenes, headless, bare and recorded.
+
+    Bare is one `mj_step` over the whole scene, with its water.
+    """
+    results = {name: _headless_factors(name) for name in ("auv_waves", "hourglass_drop_waves")}
     with tempfile.TemporaryDirectory() as folder:
-        headless = _real_time_factor(None)
-        recorded = _real_time_factor(Path(folder) / "run.rrd")
-    return {"headless": headless, "recorded": recorded}
+        results["auv_waves"]["recorded"] = _recorded_factor("auv_waves", Path(folder) / "run.rrd")
+    return results
 
 
-def _real_time_factor(record: Path | None) -> float:
-    """Run a scene, and record it into a file if there is one."""
-    simulation = Simulation(_load_scene("auv_waves"))
-    recording = Recording(simulation, record) if record else None
-    for frame in simulation.frames():
-        if recording:
+def _headless_factors(name: str) -> dict[str, float]:
+    """Run a scene, and step the same model and data without anybody who watches."""
+    least = {"headless": np.inf, "bare": np.inf}
+    for _ in range(3):
+        simulation = Simulation(_load_scene(name))
+        least["headless"] = min(least["headless"], _measure_processor(simulation.run))
+        bare = Simulation(_load_scene(name))
+        step = functools.partial(mujoco.mj_step, bare.model, bare.data, bare.steps)
+        least["bare"] = min(least["bare"], _measure_processor(step))
+    return {label: simulation.scene.duration / seconds for label, seconds in least.items()}
+
+
+def _recorded_factor(name: str, path: Path) -> float:
+    """Run a scene, and record it at its rate."""
+    simulation = Simulation(_load_scene(name))
+    recording = Recording(simulation, path)
+
+    def record() -> None:
+        for frame in simulation.frames():
             recording.add(frame)
-    summary = simulation.summary()
-    if recording:
-        recording.close(summary)
-    return summary.real_time_factor
+        recording.close(simulation.summary())
+
+    return simulation.scene.duration / _measure_processor(record)
 
 
-def describe_real_time(results: dict[str, float]) -> Iterator[str]:
-    """Describe both in a line."""
-    yield (
-        f"auv_waves: {results['headless']:.1f} x real time headless, "
-        f"{results['recorded']:.1f} x recorded at 60 Hz"
-    )
+def _measure_processor(call: Callable[[], object]) -> float:
+    """Processor time of a call [s], of all threads of this process."""
+    started = time.process_time()
+    call()
+    return time.process_time() - started
+
+
+def describe_real_time(results: Results) -> Iterator[str]:
+    """Describe each scene in a line."""
+    for name, factors in results.items():
+        recorded = factors.get("recorded")
+        rest = "" if recorded is None else f", {recorded:.1f} x recorded at 60 Hz"
+        yield (
+            f"{name}: {factors['headless']:.0f} x real time headless, "
+            f"{factors['bare'] / factors['headless']:.2f} times as long as mj_step alone{rest}"
+        )
 
 
 # building the water of a model
