@@ -69,15 +69,24 @@ class Journal:
             self.close()
             raise
 
-    def add(self, row: Mapping[str, Any]) -> None:
-        """Write one row, and force it onto the disk.
+    def add(self, *rows: Mapping[str, Any]) -> None:
+        """Write rows, and force them onto the disk together.
 
         Raises:
-            SweepError: there is no space for it; the rows before it stay.
+            SweepError: there is no space for them; the rows before them stay.
         """
-        texts = _as_texts(row)
-        self._write(self._line(texts))
-        self.rows[int(row["run"])] = texts
+        texts = [_as_texts(row) for row in rows]
+        self._write(b"".join(map(self._line, texts)))
+        self.rows |= {int(row["run"]): row for row in texts}
+
+    def sort(self) -> None:
+        """Put the rows of the file into the order of the runs, for which nothing is risked."""
+        if list(self.rows) == sorted(self.rows):
+            return
+        self.rows = {run: self.rows[run] for run in sorted(self.rows)}
+        # the order is a courtesy: where no file can be made, the rows stay as they are
+        with contextlib.suppress(OSError), replace_file(self.path) as part:
+            part.write_bytes(self._line() + b"".join(map(self._line, self.rows.values())))
 
     @property
     def state(self) -> str:
