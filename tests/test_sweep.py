@@ -283,8 +283,12 @@ def test_the_command_tells_how_many_failed(tmp_path):
         )
     ]
     result = CliRunner().invoke(app, arguments)
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 3, result.output
     assert "3 runs, 2 failed" in result.output
+    assert result.stderr == (
+        "note: 2 of 3 runs failed; the first is run 0: scene 'hourglass_drop_still': "
+        "mass is -100.0; it must be above 0\n"
+    )
     assert [row["status"] for row in read(out)] == ["failed", "failed", "done"]
     result = CliRunner().invoke(app, [*arguments[:3], "mass=1:2", *arguments[4:]])
     assert result.exit_code == 1

@@ -11,6 +11,7 @@ from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning, SceneError, Scene
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.batches import run_simulations
+from buoyancy_mj.scenes.linear_algebra import on_one_thread
 from buoyancy_mj.scenes.scene import Scene, read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.steering import check_trust
@@ -64,7 +65,7 @@ class Variations:
         return _read_scene(self.path, self.settings, self.keys, values)
 
     def run(self, values: Mapping[int, Values], threads: int = 0) -> Iterator[dict[str, Any]]:
-        """Run some runs side by side.
+        """Run some runs side by side; the rows are the same on any number of threads and cores.
 
         Args:
             values: the values of each, by its number.
@@ -77,6 +78,10 @@ class Variations:
             UntriedError: a file that a run needs cannot be read.
             MemoryError: the memory runs out.
         """
+        return on_one_thread(self._run(values, threads))
+
+    def _run(self, values: Mapping[int, Values], threads: int) -> Iterator[dict[str, Any]]:
+        """A row for each run, as they end."""
         simulations: dict[int, Simulation] = {}
         for run, own in values.items():
             try:
