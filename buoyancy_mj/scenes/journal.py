@@ -210,18 +210,24 @@ def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequenc
     import pyarrow as pa  # comes along with Rerun
     from pyarrow import parquet
 
-    columns: dict[str, list[Any]] = {}
-    for name in header:
-        texts = [row[name] for row in rows]
-        if name in _TEXT_COLUMNS:
-            columns[name] = [*texts]
-        else:
-            columns[name] = [float(text) if text != "" else None for text in texts]
+    columns = {name: [_read_cell(name, row[name]) for row in rows] for name in header}
     try:
         with replace_file(path) as part:
             parquet.write_table(pa.table(columns), part)
     except (OSError, pa.ArrowException) as error:
         raise SweepError(f"cannot write '{path}': {error}") from error
+
+
+def read_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row as a file gives it back: numbers as floats, and None for an empty cell."""
+    return {name: _read_cell(name, text) for name, text in _as_texts(row).items()}
+
+
+def _read_cell(name: str, text: str) -> str | float | None:
+    """What a cell of a column holds."""
+    if name in _TEXT_COLUMNS:
+        return text
+    return float(text) if text != "" else None
 
 
 def _open_locked(path: Path, *, follow: bool) -> io.FileIO:
