@@ -44,6 +44,7 @@ def test_columns_of_parameters_are_runs_side_by_side():
     assert len(function.rows) == 3
 
 
+@pytest.mark.slow
 def test_differential_evolution_finds_a_draft():
     function = objective(
         STILL,
