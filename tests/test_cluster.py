@@ -60,14 +60,25 @@ def write_scene(folder, vehicle="models/block.xml", meshdir="meshes"):
 # chunks -------------------------------------------------------------------------------------------
 
 
-def test_all_runs_are_in_chunks_which_shrink_towards_the_end():
-    sizes, remaining = [], 10_000
-    while remaining:
-        sizes.append(chunk_size(remaining, 100, 0.1))
-        remaining -= sizes[-1]
+def list_chunks(runs, cores, run_time):
+    """Sizes of all chunks of a sweep, one after the other."""
+    sizes = []
+    while runs:
+        sizes.append(min(runs, chunk_size(runs, cores, run_time)))
+        runs -= sizes[-1]
+    return sizes
+
+
+def test_chunks_shrink_towards_the_end_down_to_one_run():
+    sizes = list_chunks(10_000, 100, 0.1)
     assert sizes[0] == 10_000 // (cluster.SHARE * 100)
     assert sizes == sorted(sizes, reverse=True)
     assert sizes[-100:] == [1] * 100
+
+
+def test_chunks_are_long_enough_that_one_process_can_give_them_to_all_cores():
+    sizes = list_chunks(1_000_000, 10_000, 0.1)
+    assert min(sizes[:-1]) * 0.1 >= 10_000 * cluster.GIVING_TIME
 
 
 def test_a_chunk_takes_no_longer_than_its_time_and_is_one_run_at_first():

@@ -21,10 +21,13 @@ from buoyancy_mj.scenes.worker import Outcome, run_chunk
 
 RETRIES = 3
 """How often Ray runs a chunk again whose process or machine was lost."""
-MOST_RUNS = 64
+MOST_RUNS = 1000
 """Most runs in a chunk."""
 CHUNK_TIME = 10.0
 """How long a chunk may take [s]: what a lost machine costs, and how old rows are that come."""
+GIVING_TIME = 5e-4
+"""Time that this process needs for a chunk [s], `scripts/bench.py --only cluster` measures it; in
+shorter chunks than this for each core the cores would wait for it."""
 SHARE = 4
 """Chunks that each core has still to come, so that all end together."""
 QUEUED = 2
@@ -60,8 +63,11 @@ def chunk_size(remaining: int, cores: int, run_time: float) -> int:
         cores: number of cores.
         run_time: mean time of a run [s]; inf while it is not known.
     """
-    most = min(MOST_RUNS, CHUNK_TIME / run_time if run_time > 0.0 else MOST_RUNS)
-    return int(max(1.0, min(most, remaining / (SHARE * cores))))
+    if not math.isfinite(run_time):
+        return 1
+    most = min(float(MOST_RUNS), CHUNK_TIME / max(run_time, 1e-9))
+    least = min(most, cores * GIVING_TIME / max(run_time, 1e-9))
+    return max(1, math.ceil(least), int(min(most, remaining / (SHARE * cores))))
 
 
 class Cluster:
@@ -215,9 +221,12 @@ class _Course:
         """Give Ray enough chunks for each core."""
         cores = self._cluster.count_cores()
         run_time = self._seconds / self._runs if self._runs else math.inf
-        while self.queue and len(self.pending) < QUEUED * cores:
+        # one run for each core shows how long they take
+        most = QUEUED * cores if self._runs else cores
+        while self.queue and len(self.pending) < most:
             size = chunk_size(len(self.queue), cores, run_time)
-            self._submit(dict(self.queue.popleft() for _ in range(size)))
+            numbers = range(min(size, len(self.queue)))
+            self._submit(dict(self.queue.popleft() for _ in numbers))
 
     def collect(self) -> list[dict[str, Any]]:
         """Take the rows that come within `POLL`."""
