@@ -50,6 +50,8 @@ from buoyancy_mj.records import show_fields as _show_fields
 from buoyancy_mj.scenes.fleet import Vehicle as Vehicle
 from buoyancy_mj.scenes.frames import Frame as Frame
 from buoyancy_mj.scenes.frames import VehicleFrame as VehicleFrame
+from buoyancy_mj.scenes.objective import Objective as Objective
+from buoyancy_mj.scenes.objective import objective as objective
 from buoyancy_mj.scenes.scene import Scene as Scene
 from buoyancy_mj.scenes.scene import read_scene as read_scene
 from buoyancy_mj.scenes.scene_vehicle import SceneVehicle as SceneVehicle
@@ -57,6 +59,7 @@ from buoyancy_mj.scenes.scene_vehicle import Start as Start
 from buoyancy_mj.scenes.simulation import Simulation as Simulation
 from buoyancy_mj.scenes.summary import Summary as Summary
 from buoyancy_mj.scenes.summary import VehicleSummary as VehicleSummary
+from buoyancy_mj.scenes.sweep import Sweep as Sweep
 from buoyancy_mj.sea.currents import CurrentProfile as CurrentProfile
 from buoyancy_mj.sea.currents import CurrentSeries as CurrentSeries
 from buoyancy_mj.sea.dispersion import wavenumber as wavenumber

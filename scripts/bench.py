@@ -16,7 +16,8 @@ All values are medians or means over repeats:
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
 - build: the water of a model whose meshes are new, or were seen before;
 - first_step: the time from a fresh interpreter through the first step;
-- statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections.
+- statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections;
+- cluster: a sweep on Ray on one core and two, what is moved, and what comes of it on 10,000 cores.
 """
 
 import argparse
@@ -25,7 +26,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks import statics, steps, submersion, tree, vehicle
+from benchmarks import cluster, statics, steps, submersion, tree, vehicle
 from rich.console import Console
 from rich.table import Table
 
@@ -50,6 +51,7 @@ BENCHMARKS = {
     "build": Benchmark(steps.measure_build, steps.describe_build),
     "first_step": Benchmark(steps.measure_first_step, steps.describe_first_step),
     "statics": Benchmark(statics.measure, statics.describe),
+    "cluster": Benchmark(cluster.measure, cluster.describe),
 }
 """The benchmarks by name, in the order in which they run."""
 

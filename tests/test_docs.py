@@ -194,6 +194,9 @@ def understand(command, *words):
         words = [word for word in words if word not in shown] + ["--duration", "0.05"]
     elif command == "sweep":
         words = [re.sub(r":\d$", ":1", word) for word in words] + ["--duration", "0.02"]
+        if "--on" in words:
+            # the cluster is not here
+            words[words.index("--on") + 1] = "local"
         if "--draws" in words:
             words[words.index("--draws") + 1] = "2"
     result = CliRunner().invoke(app, [command, *words])

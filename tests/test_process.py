@@ -22,7 +22,7 @@ from buoyancy_mj.cli.signals import Stop, raise_later, raise_signals
 from buoyancy_mj.engine import registration
 from buoyancy_mj.engine.c_functions import find_cause
 from buoyancy_mj.files import open_partial, replace_file
-from buoyancy_mj.scenes import batches, catalog, sweep
+from buoyancy_mj.scenes import batches, catalog, places, variations
 from buoyancy_mj.scenes.sweep import Sweep
 
 STILL = catalog.scenes()["hourglass_drop_still"]
@@ -80,7 +80,7 @@ def test_a_signal_while_a_model_is_built_ends_a_sweep_and_leaves_no_row_of_it(
 ):
     out = tmp_path / "rows.csv"
     arguments = ["sweep", str(STILL), "--over", "mass=9:10:2", "--duration", "0.05", "--out", out]
-    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    monkeypatch.setattr(places, "BATCH_SIZE", 1)
     send_when_asked(signal.SIGINT, at)
     result = CliRunner().invoke(app, list(map(str, arguments)))
     assert result.exit_code == 130
@@ -190,6 +190,7 @@ def test_batches_are_stepped_in_blocks_that_change_nothing(tmp_path, monkeypatch
     for block_time in (0.0, 1e9):
         rollouts.append([])
         monkeypatch.setattr(batches, "BLOCK_TIME", block_time)
+        monkeypatch.setattr(batches, "PATIENCE", 0.0)
         # one of them diverges
         plan = Sweep(
             STILL, ("duration=0.4",), ("start.velocity.0",), ((0.0,), (1e150,), (1.0,)),
@@ -266,8 +267,8 @@ def test_a_signal_that_other_code_catches_still_ends_the_command(here, monkeypat
 
     made = []
     monkeypatch.setattr("buoyancy_mj.cli.runs.Simulation", deaf)
-    monkeypatch.setattr(sweep, "Simulation", deaf)
-    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    monkeypatch.setattr(variations, "Simulation", deaf)
+    monkeypatch.setattr(places, "BATCH_SIZE", 1)
     assert here(*arguments).exit_code == 143
     assert len(made) == 1
 

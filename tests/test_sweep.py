@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 
 from buoyancy_mj import SceneError, Simulation, SweepError, read_scene
 from buoyancy_mj.cli import app
-from buoyancy_mj.scenes import catalog, journal, sweep
+from buoyancy_mj.scenes import catalog, journal, places, variations
 from buoyancy_mj.scenes.ranges import FieldRange, draws, grid, parse_range
 from buoyancy_mj.scenes.sweep import Sweep
 
@@ -131,12 +131,12 @@ def test_a_grid_has_all_combinations_the_last_field_fastest():
 
 @pytest.mark.parametrize("name", ["out.csv", "out.parquet"])
 def test_what_is_there_is_not_run_again(name, tmp_path, monkeypatch):
-    monkeypatch.setattr(sweep, "BATCH_SIZE", 2)
+    monkeypatch.setattr(places, "BATCH_SIZE", 2)
     wanted = plan(tmp_path, "start.position.2=0.3:0.9:6", name=name)
     whole = list(plan(tmp_path, "start.position.2=0.3:0.9:6", name="whole.csv").run())
     made = []
     monkeypatch.setattr(
-        sweep, "Simulation", lambda scene, **_: made.append(scene) or Simulation(scene)
+        variations, "Simulation", lambda scene, **_: made.append(scene) or Simulation(scene)
     )
     going = wanted.run()
     for _ in range(3):
@@ -283,8 +283,12 @@ def test_the_command_tells_how_many_failed(tmp_path):
         )
     ]
     result = CliRunner().invoke(app, arguments)
-    assert result.exit_code == 0, result.output
+    assert result.exit_code == 3, result.output
     assert "3 runs, 2 failed" in result.output
+    assert result.stderr == (
+        "note: 2 of 3 runs failed; the first is run 0: scene 'hourglass_drop_still': "
+        "mass is -100.0; it must be above 0\n"
+    )
     assert [row["status"] for row in read(out)] == ["failed", "failed", "done"]
     result = CliRunner().invoke(app, [*arguments[:3], "mass=1:2", *arguments[4:]])
     assert result.exit_code == 1
@@ -310,7 +314,7 @@ BLOCK = trimesh.creation.box((0.4, 0.3, 0.2)).export(file_type="obj")
 
 
 def test_a_file_that_is_missing_stops_a_sweep_and_fails_no_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    monkeypatch.setattr(places, "BATCH_SIZE", 1)
     (tmp_path / "block.xml").write_text(MESH)
     mesh = tmp_path / "block.obj"
     mesh.write_text(BLOCK)
@@ -347,12 +351,12 @@ def test_memory_that_runs_out_stops_a_sweep_and_fails_no_run(tmp_path, monkeypat
     def too_much(*_):
         raise MemoryError("Unable to allocate 3 TiB")
 
-    monkeypatch.setattr(sweep, "BATCH_SIZE", 1)
+    monkeypatch.setattr(places, "BATCH_SIZE", 1)
     wanted = plan(tmp_path, "mass=20:21:2")
     going = wanted.run()
     next(going)
     with monkeypatch.context() as patched:
-        patched.setattr(sweep, "run_simulations", too_much)
+        patched.setattr(variations, "run_simulations", too_much)
         with pytest.raises(SweepError) as told:
             next(going)
     assert str(told.value) == (
@@ -488,7 +492,7 @@ def test_a_table_of_somebody_else_is_not_replaced(tmp_path):
 
 def test_a_reason_is_one_line(tmp_path, monkeypatch):
     reason = 'two\nlines,\u2028and "quotes"'
-    monkeypatch.setattr(sweep, "run_simulations", lambda some, _: [(n, reason) for n in some])
+    monkeypatch.setattr(variations, "run_simulations", lambda some, _: [(n, reason) for n in some])
     wanted = plan(tmp_path, "mass=20:21:2")
     rows = list(wanted.run())
     assert [row["reason"] for row in rows] == ['two lines, and "quotes"'] * 2

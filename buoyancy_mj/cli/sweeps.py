@@ -12,11 +12,14 @@ from buoyancy_mj.cli.flags import RunFlags, SceneArgument, SelectionFlags
 from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.errors import SweepError
 from buoyancy_mj.scenes import catalog, ranges
+from buoyancy_mj.scenes.places import LOCAL
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.sweep import Sweep
 
 MOST_THREADS = 1024
 """Most threads that step at once."""
+SOME_FAILED = 3
+"""Exit status of a sweep that is complete, and some of whose runs failed."""
 
 
 @command()
@@ -45,10 +48,18 @@ def sweep(
         int,
         typer.Option(min=0, max=MOST_THREADS, help="Step on this many threads; 0 is one per core."),
     ] = 0,
+    on: Annotated[
+        str,
+        typer.Option(
+            metavar="local|ray|ray://HOST:PORT",
+            help="Run on the cores of this machine, or on a cluster of Ray.",
+        ),
+    ] = LOCAL,
 ) -> None:
     """Run a scene many times, over a grid or random draws.
 
-    The runs go side by side on all cores. A sweep that was interrupted goes on where it was.
+    The runs go side by side on all cores. A sweep that was interrupted goes on where it was. The
+    exit status is 3 if some runs failed.
     """
     # what varies, and what all runs share
     fields = [ranges.parse_range(text) for text in over]
@@ -64,9 +75,9 @@ def sweep(
     columns = MofNCompleteColumn(), TimeRemainingColumn()
     with console.show_progress(path.stem, len(values), *columns) as update:
         try:
-            for row in plan.run(threads):
+            for row in plan.run(threads, on):
                 done += 1
-                failures += [row["reason"]] if row["status"] != "done" else []
+                failures += [row] if row["status"] != "done" else []
                 update(advance=1)
                 raise_received()
         except KeyboardInterrupt:
@@ -77,5 +88,11 @@ def sweep(
             raise
     told = f"{done} runs, {len(failures)} failed: {console.quote_path(out)}"
     console.print_line(console.out, told)
+    if not failures:
+        return
+    first = min(failures, key=lambda row: int(row["run"]))
     if len(failures) == done:
-        raise SweepError(f"all {done} runs failed; the first: {failures[0]}")
+        raise SweepError(f"all {done} runs failed; the first: {first['reason']}")
+    told = f"{len(failures)} of {done} runs failed; the first is run {first['run']}: "
+    console.print_line(console.err, f"note: {told}{first['reason']}", style="yellow")
+    raise typer.Exit(SOME_FAILED)

@@ -20,6 +20,9 @@ MOST_MEMORY = 2e9
 """Memory that the trajectory of one run may take [bytes]; a longer run goes alone, without it."""
 BLOCK_TIME = 0.25
 """About how long a batch steps before Ctrl-C is asked for [s]."""
+PATIENCE = 3.0
+"""How many times longer than its first step a batch may step at least: in each block the engine
+asks for the devices of all its simulations anew, which may take as long as many steps."""
 _BAD_VALUES = [int(warning) for warning in QUANTITIES]
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 _SIZES = ("nq", "nv", "na", "nu", "nbody", "ngeom", "nsite", "nsensordata", "nmocap")
@@ -74,13 +77,15 @@ def run_batch(simulations: Sequence[Simulation], threads: int = 0) -> list[str]:
     # all steps, block by block, between which Ctrl-C acts
     stepping = _Stepping(many, simulations)
     started = time.perf_counter()
-    done, size = 0, 1
+    done, size, block_time = 0, 1, 0.0
     while done < first.steps and len(stepping.failures) < len(simulations):
         size = min(size, first.steps - done)
         begun = time.perf_counter()
         stepping.step(slice(done, done + size))
+        spent = time.perf_counter() - begun
         done += size
-        size = max(1, int(size * min(2.0, BLOCK_TIME / (time.perf_counter() - begun))))
+        block_time = block_time or max(BLOCK_TIME, PATIENCE * spent)
+        size = max(1, int(size * min(2.0, block_time / spent)))
     wall_time = (time.perf_counter() - started) / len(simulations)
 
     # what came of each

@@ -10,21 +10,21 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 
 def scenes() -> dict[str, Path]:
     """Scene files by name."""
-    return {path.stem: path for path in sorted(_shipped("scenes").glob("*.toml"))}
+    return {path.stem: path for path in sorted(shipped_folder("scenes").glob("*.toml"))}
 
 
 def models() -> dict[str, Path]:
     """Vehicle MJCF files by name: `models/NAME/NAME.xml`."""
     return {
         path.parent.name: path
-        for path in sorted(_shipped("models").glob("*/*.xml"))
+        for path in sorted(shipped_folder("models").glob("*/*.xml"))
         if path.stem == path.parent.name
     }
 
 
 def environments() -> dict[str, Path]:
     """Environment MJCF files by name: `scenes/NAME.xml`."""
-    return {path.stem: path for path in sorted(_shipped("scenes").glob("*.xml"))}
+    return {path.stem: path for path in sorted(shipped_folder("scenes").glob("*.xml"))}
 
 
 def scene_path(name: str) -> Path:
@@ -61,8 +61,8 @@ def summary(model: Path) -> str:
     return next((line for line in lines if line and not line.startswith("#")), "")
 
 
-def _shipped(kind: str) -> Path:
-    """The folder of `kind`: inside an installed package, beside it in a checkout."""
+def shipped_folder(kind: str) -> Path:
+    """The folder of 'models' or 'scenes': in an installed package, or beside it in a checkout."""
     inside = _PACKAGE / "shipped" / kind
     return inside if inside.is_dir() else _PACKAGE.parent / kind
 

@@ -69,15 +69,24 @@ class Journal:
             self.close()
             raise
 
-    def add(self, row: Mapping[str, Any]) -> None:
-        """Write one row, and force it onto the disk.
+    def add(self, *rows: Mapping[str, Any]) -> None:
+        """Write rows, and force them onto the disk together.
 
         Raises:
-            SweepError: there is no space for it; the rows before it stay.
+            SweepError: there is no space for them; the rows before them stay.
         """
-        texts = _as_texts(row)
-        self._write(self._line(texts))
-        self.rows[int(row["run"])] = texts
+        texts = [_as_texts(row) for row in rows]
+        self._write(b"".join(map(self._line, texts)))
+        self.rows |= {int(row["run"]): row for row in texts}
+
+    def sort(self) -> None:
+        """Put the rows of the file into the order of the runs, for which nothing is risked."""
+        if list(self.rows) == sorted(self.rows):
+            return
+        self.rows = {run: self.rows[run] for run in sorted(self.rows)}
+        # the order is a courtesy: where no file can be made, the rows stay as they are
+        with contextlib.suppress(OSError), replace_file(self.path) as part:
+            part.write_bytes(self._line() + b"".join(map(self._line, self.rows.values())))
 
     @property
     def state(self) -> str:
@@ -201,18 +210,24 @@ def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequenc
     import pyarrow as pa  # comes along with Rerun
     from pyarrow import parquet
 
-    columns: dict[str, list[Any]] = {}
-    for name in header:
-        texts = [row[name] for row in rows]
-        if name in _TEXT_COLUMNS:
-            columns[name] = [*texts]
-        else:
-            columns[name] = [float(text) if text != "" else None for text in texts]
+    columns = {name: [_read_cell(name, row[name]) for row in rows] for name in header}
     try:
         with replace_file(path) as part:
             parquet.write_table(pa.table(columns), part)
     except (OSError, pa.ArrowException) as error:
         raise SweepError(f"cannot write '{path}': {error}") from error
+
+
+def read_row(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A row as a file gives it back: numbers as floats, and None for an empty cell."""
+    return {name: _read_cell(name, text) for name, text in _as_texts(row).items()}
+
+
+def _read_cell(name: str, text: str) -> str | float | None:
+    """What a cell of a column holds."""
+    if name in _TEXT_COLUMNS:
+        return text
+    return float(text) if text != "" else None
 
 
 def _open_locked(path: Path, *, follow: bool) -> io.FileIO:

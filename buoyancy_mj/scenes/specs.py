@@ -62,7 +62,7 @@ def read_spec(path: Path) -> mujoco.MjSpec:
 
     for asset in spec.meshes:
         if asset.file.startswith(_PACKAGE_SCHEMES):
-            asset.file = str(_find_in_package(asset.file, path))
+            asset.file = str(find_in_package(asset.file, path))
         elif asset.file.startswith(_FILE_SCHEME):
             asset.file = urllib.parse.unquote(asset.file.removeprefix(_FILE_SCHEME))
     read_mesh_files(spec, path)
@@ -122,7 +122,7 @@ def _one_line(error: Exception) -> str:
     return " ".join(str(error).split())
 
 
-def _find_in_package(uri: str, path: Path) -> Path:
+def find_in_package(uri: str, path: Path) -> Path:
     """The file that 'package://NAME/...' means, in a folder NAME.
 
     The folder is looked for above and beside the file at `path`, which names the uri, and then on

@@ -1,37 +1,15 @@
 """`Sweep`: many runs of one scene with other values, one row of results each."""
 
+import contextlib
 import dataclasses
-import functools
-import hashlib
-import warnings
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from buoyancy_mj.errors import (
-    BuoyancyError,
-    BuoyancyWarning,
-    SceneError,
-    SceneTypeError,
-    SweepError,
-)
-from buoyancy_mj.scenes import catalog
-from buoyancy_mj.scenes.assembly import assemble
-from buoyancy_mj.scenes.batches import run_simulations
+from buoyancy_mj.errors import SweepError
+from buoyancy_mj.scenes import catalog, ranges
 from buoyancy_mj.scenes.journal import Journal, write_parquet
-from buoyancy_mj.scenes.scene import Scene, read_scene
-from buoyancy_mj.scenes.simulation import Simulation
-from buoyancy_mj.scenes.steering import check_trust
-from buoyancy_mj.scenes.summary import list_values
-
-BATCH_SIZE = 64
-"""Most runs in a batch: a sweep that is killed loses no more."""
-_NO_COLUMNS = ("scene", "wall_time", "real_time_factor")
-"""Values of the summary that become no columns: a digest stands for the scene, and time varies."""
-_OF_MISSION = ("points", "mission_time")
-"""Columns of a scene with a mission: its points, and the length of the attempt [s]."""
-_OF_FILES = ("MuJoCo cannot read", "Error opening file", "ould not allocate")
-"""Words of errors that have to do with files or memory, and not with the values of a run."""
+from buoyancy_mj.scenes.places import LOCAL, find_place
+from buoyancy_mj.scenes.variations import UntriedError, vary
 
 
 @dataclasses.dataclass(frozen=True)
@@ -40,6 +18,10 @@ class Sweep:
 
     Raises:
         SweepError: results of an unknown format, or a field that stands twice.
+
+    Example:
+        >>> plan = Sweep.over("auv_waves", ["mass=20:25:6"], "rows.csv")
+        >>> drafts = [row["peak_draft"] for row in plan.run()]
     """
 
     path: Path
@@ -65,89 +47,88 @@ class Sweep:
                 f"a field is given twice: {', '.join(self.keys)}; give each --over once"
             )
 
-    def run(self, threads: int = 0) -> Iterator[dict[str, str]]:
-        """Run what has not been run yet, batch by batch.
+    @classmethod
+    def over(
+        cls,
+        scene: str | Path,
+        over: Sequence[str],
+        out: str | Path,
+        *,
+        draws: int | None = None,
+        seed: int = 0,
+        settings: Sequence[str] = (),
+        trust: bool = False,
+    ) -> "Sweep":
+        """A sweep over a grid or random draws, as the command line has it.
+
+        Args:
+            scene: a scene file, or the name of a scene that ships.
+            over: texts 'KEY=a:b:n', n values from a to b, or 'KEY=a:b' for random draws.
+            out: file of the results, .csv or .parquet.
+            draws: number of random draws; None for a grid.
+            seed: of the draws.
+            settings: texts KEY=VALUE that all runs share.
+            trust: whether to run the Python files that the scene names as controllers.
+
+        Raises:
+            SceneError: there is no such scene.
+            SweepError: a range, a number of runs or a file that makes no sense.
+        """
+        fields = [ranges.parse_range(text) for text in over]
+        values = ranges.grid(fields) if draws is None else ranges.draws(fields, draws, seed)
+        keys = tuple(field.key for field in fields)
+        path = catalog.scene_path(str(scene))
+        return cls(path, tuple(settings), keys, tuple(values), Path(out), trust)
+
+    def run(self, threads: int = 0, on: str = LOCAL) -> Iterator[dict[str, str]]:
+        """Run what has not been run yet.
 
         Args:
             threads: number of threads that step at once; 0 for one per core.
+            on: where: 'local', on the cores of this machine; 'ray', on the cluster of Ray that
+                this process or machine belongs to, or else on one of this machine alone; or
+                'ray://HOST:PORT', on that cluster. See `cluster.Cluster`.
 
         Yields:
-            A row for each run, those of earlier sweeps first.
+            A row for each run, those of earlier sweeps first, then as they end.
 
         Raises:
             SceneError: a key that the scene does not have, or a controller that is not trusted.
             SweepError: the file of the results holds something else, another sweep is writing it,
-                or it cannot be written; a file that a run needs cannot be read, or the memory runs
-                out. What is done stays, and is not run again.
+                or it cannot be written; there is no such place; a file that a run needs cannot be
+                read, or the memory runs out. What is done stays, and is not run again.
         """
-        check_trust(read_scene(self.path, self.settings), trust=self.trust)
+        place = find_place(on, threads)
+        variations = vary(self.path, self.settings, self.keys, self.values, trust=self.trust)
 
         # parquet cannot grow row by row: a journal stands beside it until all is done
         is_parquet = self.out.suffix == ".parquet"
         table = self.out.resolve() if self.out.is_symlink() else self.out
         path = table.with_suffix(".partial.csv") if is_parquet else self.out
-        journal = Journal(path, self._header, self._digest, self.out if is_parquet else None)
+        header, digest = variations.header, variations.digest
+        journal = Journal(path, header, digest, self.out if is_parquet else None)
         try:
             self._check_rows(path, journal.rows)
-            self._check_keys()
             yield from journal.rows.values()
-            for row in self._run_missing(journal.rows, threads):
-                journal.add(row)
-                yield journal.rows[int(row["run"])]
+            missing = self._find_missing(journal.rows)
+            if missing:
+                with place() as work, contextlib.closing(work(variations, missing)) as done:
+                    for rows in done:
+                        journal.add(*rows)
+                        yield from (journal.rows[int(row["run"])] for row in rows)
 
             # the whole table
             if is_parquet:
-                rows = [journal.rows[run] for run in sorted(journal.rows)]
-                write_parquet(self.out, rows, journal.header)
+                ordered = [journal.rows[run] for run in sorted(journal.rows)]
+                write_parquet(self.out, ordered, journal.header)
                 path.unlink()
-        except (MemoryError, _UntriedError) as error:
+            else:
+                journal.sort()
+        except (MemoryError, UntriedError) as error:
             reason = str(error) or "the memory ran out"
             raise SweepError(f"the sweep stopped: {reason}; {journal.state}") from error
         finally:
             journal.close()
-
-    @property
-    def _header(self) -> list[str]:
-        """Columns of the results."""
-        return ["run", "scene", *self.keys, "status", "reason", *self._results]
-
-    @functools.cached_property
-    def _results(self) -> list[str]:
-        """Columns of the summary; a sweep with several vehicles has NAME.column for each."""
-        vehicles = self._name_vehicles()
-        scene = read_scene(self.path, self.settings)
-        steered = [control.vehicle or vehicles[0] for control in scene.control]
-        names = list_values(vehicles, steered)
-        if scene.mission is not None:
-            names += _OF_MISSION
-        return [name for name in names if name not in (*_NO_COLUMNS, *self.keys)]
-
-    def _name_vehicles(self) -> list[str]:
-        """Names of the vehicles, as in the first run that can be assembled."""
-        names = [""]
-        for run in range(len(self.values)):
-            try:
-                scene = self._read_scene(run)
-                names = [str(entry.name) for entry in scene.entries]
-                with warnings.catch_warnings():
-                    # the run itself will give them
-                    warnings.simplefilter("ignore", BuoyancyWarning)
-                    return [group.name for group in assemble(scene).afloat]
-            except BuoyancyError:
-                # the row of that run will say why
-                continue
-        return names
-
-    @functools.cached_property
-    def _digest(self) -> str:
-        """A short text of all that the runs have in common."""
-        scene = read_scene(self.path, self.settings)
-        models = [catalog.model_path(entry.model, scene.folder) for entry in scene.entries]
-        controls = [path for control in scene.control for path in control.list_files(scene.folder)]
-        read = [path for path in (self.path, *models, *controls) if path.is_file()]
-        files = [path.read_bytes() for path in read]
-        common = repr((*files, self.settings, self.keys))
-        return f"{self.path.stem} {hashlib.blake2b(common.encode(), digest_size=4).hexdigest()}"
 
     def _check_rows(self, path: Path, rows: Mapping[int, Mapping[str, str]]) -> None:
         """Refuse rows of runs that this sweep does not have, or has with other values."""
@@ -158,65 +139,6 @@ class Sweep:
                     f"'{path}' holds runs with other values; give another --out, or remove it"
                 )
 
-    def _check_keys(self) -> None:
-        """Refuse a key that the scene lacks, or that takes no numbers: every run would fail."""
-        try:
-            self._read_scene(0)
-        except SceneTypeError:
-            raise
-        except SceneError:
-            # other values may make sense
-            return
-
-    def _read_scene(self, run: int) -> Scene:
-        """The scene with the values of one run."""
-        varied = (
-            f"{key}={value!r}" for key, value in zip(self.keys, self.values[run], strict=True)
-        )
-        return read_scene(self.path, [*self.settings, *varied])
-
-    def _run_missing(self, done: Container[int], threads: int) -> Iterator[dict[str, Any]]:
-        """Run what is not done, batch by batch; a row for each run."""
-        missing = [run for run in range(len(self.values)) if run not in done]
-        for start in range(0, len(missing), BATCH_SIZE):
-            simulations: dict[int, Simulation] = {}
-            for run in missing[start : start + BATCH_SIZE]:
-                try:
-                    simulations[run] = Simulation(self._read_scene(run), trust=self.trust)
-                except BuoyancyError as error:
-                    if not _is_of_values(error):
-                        raise _UntriedError(str(error)) from error
-                    yield self._row(run, reason=str(error))
-            for run, reason in run_simulations(simulations, threads):
-                yield self._row(run, simulations[run], reason)
-
-    def _row(
-        self, run: int, simulation: Simulation | None = None, reason: str = ""
-    ) -> dict[str, Any]:
-        """One row of the results."""
-        row = {
-            "run": run,
-            "scene": self._digest,
-            "status": "failed" if reason else "done",
-            "reason": " ".join(reason.split()),
-        }
-        row |= dict(zip(self.keys, self.values[run], strict=True))
-        results: dict[str, Any] = {}
-        if simulation and not reason:
-            results = simulation.summary().values()
-            if simulation.mission is not None:
-                report = simulation.mission.report
-                results |= dict(zip(_OF_MISSION, (report.points, report.run_time), strict=True))
-        return row | {name: results.get(name) for name in self._results}
-
-
-class _UntriedError(Exception):
-    """A run that could not be tried, whatever its values."""
-
-
-def _is_of_values(error: BaseException) -> bool:
-    """Whether an error may be due to the values of a run, and not to files or memory."""
-    if isinstance(error, (OSError, MemoryError)) or any(words in str(error) for words in _OF_FILES):
-        return False
-    cause = error.__cause__
-    return cause is None or _is_of_values(cause)
+    def _find_missing(self, done: Container[int]) -> dict[int, tuple[float, ...]]:
+        """The values of what is not done."""
+        return {run: own for run, own in enumerate(self.values) if run not in done}
