@@ -1,6 +1,5 @@
 """What a pass of the water does to the engine: its forces, and its mass matrix."""
 
-import numpy as np
 from numba import njit
 
 from buoyancy_mj.kernels import ballast, inertia, wrenches
@@ -43,7 +42,8 @@ def augment(loads, engine, record):
     if not (wet or filled):
         return UNCHANGED
     record.ids[AUGMENTED] = 1
-    record.inertia[:] = mass
+    for i in range(mass.shape[0]):
+        record.inertia[i] = mass[i]
     dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
     return AUGMENT_DUAL if dual else AUGMENT
 
@@ -54,4 +54,9 @@ def _is_augmented(mass, record):
 
     The engine may go over a pass again without computing its mass matrix anew.
     """
-    return record.ids[AUGMENTED] != 0 and np.array_equal(mass, record.inertia)
+    if record.ids[AUGMENTED] == 0:
+        return False
+    for i in range(mass.shape[0]):
+        if mass[i] != record.inertia[i]:
+            return False
+    return True

@@ -122,7 +122,10 @@ def end(engine, record):
             for i in range(6):
                 total[b, i] += cause[b, i]
     record.instant[0] = engine.time
-    record.xipos[:, :] = engine.bodies.xipos
+    xipos = engine.bodies.xipos
+    for b in range(xipos.shape[0]):
+        for i in range(3):
+            record.xipos[b, i] = xipos[b, i]
 
 
 @register_jitable

@@ -97,7 +97,9 @@ def copy(target: int64, model: int64, source: int64, instance: int32, context: i
     into, readings = view(one, Device).readings, view(other, Device).readings
     for i in range(min(into.shape[0], readings.shape[0])):
         into[i] = readings[i]
-    view(one, Device).added[:] = view(other, Device).added
+    added, others = view(one, Device).added, view(other, Device).added
+    for i in range(others.shape[0]):
+        added[i] = others[i]
 
 
 def actuator_act_dot(model: int64, data: int64, instance: int32, context: int64) -> void:
