@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
+
+from buoyancy_mj.meshes.components import label_components
 
 _JOINING = (int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD))
 """Equality constraints that hold two bodies together."""
@@ -41,8 +42,8 @@ def group_floating_bodies(model: mujoco.MjModel) -> tuple[NDArray[np.int64], ...
     A group is a kinematic tree, or several that active welds and connects hold together. Static
     bodies and mocap bodies belong to none.
     """
-    edges = np.array(_find_joined_trees(model), np.int64).reshape(-1, 2)
-    labels = trimesh.graph.connected_component_labels(edges, model.ntree)
+    edges = np.array(_find_joined_trees(model), np.int64)
+    labels = label_components(edges, model.ntree)
     return tuple(
         np.flatnonzero(np.isin(model.body_treeid, np.flatnonzero(labels == label)))
         for label in dict.fromkeys(labels.tolist())

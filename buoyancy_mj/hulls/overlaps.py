@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 
 import manifold3d
 import numpy as np
-import trimesh
 
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.hulls.hull import Hull, group_by_body
+from buoyancy_mj.meshes.components import label_components
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.overlaps import find_close_pairs
 from buoyancy_mj.meshes.surface import to_manifold
@@ -34,9 +34,7 @@ def join_overlapping(hulls: Sequence[Hull]) -> tuple[Hull, ...]:
         # groups of hulls that overlap, directly or through others
         close = find_close_pairs([hull.mesh_in_body for hull in of_body])
         edges = [(i, j) for i, j in close if _overlap(of_body[i], of_body[j], solid_of)]
-        labels = trimesh.graph.connected_component_labels(
-            np.array(edges, np.int64).reshape(-1, 2), len(of_body)
-        )
+        labels = label_components(np.array(edges, np.int64), len(of_body))
 
         # one hull, or one for each fill, of each group
         for label in dict.fromkeys(labels.tolist()):

@@ -54,9 +54,7 @@ def _is_augmented(mass, record):
 
     The engine may go over a pass again without computing its mass matrix anew.
     """
-    if record.ids[AUGMENTED] == 0:
-        return False
+    same = record.ids[AUGMENTED] != 0
     for i in range(mass.shape[0]):
-        if mass[i] != record.inertia[i]:
-            return False
-    return True
+        same = same and mass[i] == record.inertia[i]
+    return same

@@ -5,7 +5,6 @@ one, which leaves a draft or a centroid wrong by less than 0.1 % of the size at 
 """
 
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike
 
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -18,12 +17,16 @@ SECTIONS = 64
 
 def box(half_sizes: ArrayLike) -> TriMesh:
     """A box from its half sizes (3,) [m], as in MuJoCo."""
+    import trimesh
+
     unit = trimesh.creation.box(extents=(2.0, 2.0, 2.0))
     return TriMesh(unit.vertices * np.asarray(half_sizes, float), unit.faces)
 
 
 def ellipsoid(radii: ArrayLike) -> TriMesh:
     """An ellipsoid from its semi-axes (3,) [m]."""
+    import trimesh
+
     ball = trimesh.creation.icosphere(subdivisions=SUBDIVISIONS)
     scale = np.cbrt(4.0 / 3.0 * np.pi / ball.volume)
     return TriMesh(ball.vertices * scale * np.asarray(radii, float), ball.faces)
