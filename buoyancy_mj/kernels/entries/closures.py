@@ -14,7 +14,7 @@ _TYPES = {numba.int64: _WORD, numba.int32: ir.IntType(32), numba.void: ir.VoidTy
 
 
 class Late(NamedTuple):
-    """Who compiles a kernel that its C function finds not compiled yet; addresses of C functions."""
+    """Who compiles a kernel when its C function is first called: addresses of C functions."""
 
     compile: int
     """f(address of a word, 0, 0), which writes there where the compiled kernel is; it returns 0, or
