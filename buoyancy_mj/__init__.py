@@ -114,9 +114,11 @@ if TYPE_CHECKING:
     from buoyancy_mj.viz.recorder import Recorder as Recorder
 
     __version__: str
-else:
-    # each name comes from its module when it is first asked for
-    _HOMES = _read_homes(__file__)
+
+# each name comes from its module when it is first asked for
+_HOMES = _read_homes(__file__)
+if not TYPE_CHECKING:
+    __all__ = [*_HOMES]
 
 
 def __getattr__(name: str) -> Any:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 def read_homes(file: str) -> dict[str, str]:
-    """Modules by the names that a file imports from them under their own names.
+    """Modules by the public names that a file imports from them.
 
     Type checkers read the same lines, so no second list can differ from them.
     """
@@ -15,5 +15,5 @@ def read_homes(file: str) -> dict[str, str]:
         for node in ast.walk(tree)
         if isinstance(node, ast.ImportFrom) and node.module
         for alias in node.names
-        if alias.asname == alias.name
+        if alias.asname == alias.name and not alias.name.startswith("_")
     }

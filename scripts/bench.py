@@ -15,6 +15,7 @@ All values are medians or means over repeats:
 - batch: batches on one thread and on two;
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
 - first_step: the time from a fresh interpreter through the first step;
+- starting: processor time of an import, the help, a first step and compiling for it;
 - statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections.
 """
 
@@ -24,7 +25,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks import statics, steps, submersion, tree, vehicle
+from benchmarks import starting, statics, steps, submersion, tree, vehicle
 from rich.console import Console
 from rich.table import Table
 
@@ -47,6 +48,7 @@ BENCHMARKS = {
     "batch": Benchmark(steps.measure_batch, steps.describe_batch),
     "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time),
     "first_step": Benchmark(steps.measure_first_step, steps.describe_first_step),
+    "starting": Benchmark(starting.measure, starting.describe),
     "statics": Benchmark(statics.measure, statics.describe),
 }
 """The benchmarks by name, in the order in which they run."""

@@ -139,8 +139,7 @@ def public_names() -> dict[str, list[str]]:
     """The names that `from buoyancy_mj import` gives, by the room that they come from."""
     rooms: dict[str, list[str]] = {}
     for name, module in read_homes(str(ROOT / "buoyancy_mj" / "__init__.py")).items():
-        if module.startswith("buoyancy_mj."):
-            rooms.setdefault(module.split(".")[1], []).append(name)
+        rooms.setdefault(module.split(".")[1], []).append(name)
     return rooms
 
 

@@ -7,7 +7,7 @@ import pytest
 
 import buoyancy_mj
 
-HEAVY = ("trimesh", "rerun", "manifold3d", "networkx", "pyarrow", "matplotlib", "rich")
+HEAVY = ("trimesh", "rerun", "networkx", "pyarrow", "matplotlib", "rich")
 """Libraries that a start does not wait for."""
 SCIPY = ("scipy.linalg", "scipy.optimize", "scipy.sparse", "scipy.spatial")
 """Parts of SciPy, which imports each when it is first used."""

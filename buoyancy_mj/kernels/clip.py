@@ -22,9 +22,8 @@ vertices stand still and the vertical leans.
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels import swell, tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.hulls import (
     AREA_OF_FACE,
     FILL,

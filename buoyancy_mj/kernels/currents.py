@@ -1,6 +1,6 @@
 """A current as rows of numbers at depths or at times: straight between rows, held beyond them."""
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 PLACE, VELOCITY, TIMED = 0, 1, 4
 """Columns of a row: a depth [m] or a time [s]; the velocity (3) there [m/s]; and 0 for depths, 1

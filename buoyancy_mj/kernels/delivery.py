@@ -1,8 +1,7 @@
 """What a pass of the water does to the engine: its forces, and its mass matrix."""
 
-from numba import njit
-
 from buoyancy_mj.kernels import ballast, inertia, wrenches
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.multibody import PGS
 from buoyancy_mj.kernels.passes import AUGMENTED
 

@@ -6,9 +6,8 @@ the processor works on several at once.
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels import local, tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.local import HEAD, heads
 from buoyancy_mj.kernels.quadrature import PLACES
 from buoyancy_mj.kernels.vectors import place, triple

@@ -7,9 +7,8 @@ volume they are cubic polynomials, which is exact for boxes and upright cylinder
 
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import cut, moments
 from buoyancy_mj.kernels.vectors import triple
 

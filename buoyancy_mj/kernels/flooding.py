@@ -8,9 +8,8 @@ form, at any timestep, and stops where the heads are equal. So no flow turns rou
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels import fills
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.waves import elevation
 

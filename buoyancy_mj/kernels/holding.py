@@ -9,8 +9,8 @@ centre of mass of the tree, as MuJoCo's `cdof` has velocities.
 import math
 
 import numpy as np
-from numba import njit
 
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import difference
 

@@ -12,8 +12,7 @@ several.
 
 import math
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.planning import MOST, remainder
 from buoyancy_mj.kernels.polynomials import (
     add_at_many,

@@ -8,8 +8,8 @@ they are.
 import math
 
 import numpy as np
-from numba import njit
 
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.polynomials import LARGEST
 from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY
 

@@ -8,10 +8,11 @@ surface and summed at points, see `quadrature`.
 import math
 
 import numpy as np
-from numba import int64, njit
+from numba import int64
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import local, tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.expansions import add_node, sum_nodes
 from buoyancy_mj.kernels.hulls import (
     BOTTOM_DEGREE,

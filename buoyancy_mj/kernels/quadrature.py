@@ -10,9 +10,8 @@ degree 5 of Radon (1948).
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels import local
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.local import HEAD, ROOM, heads
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale

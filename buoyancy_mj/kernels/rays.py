@@ -3,7 +3,9 @@
 import math
 
 import numpy as np
-from numba import boolean, njit
+from numba import boolean
+
+from buoyancy_mj.kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy", inline="always")

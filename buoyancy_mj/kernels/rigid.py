@@ -4,7 +4,7 @@ Ten numbers stand for some bodies as one: mass, centre of mass, and inertia abou
 xy, xz, yz, in the world's axes.
 """
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy")

@@ -2,7 +2,7 @@
 
 import math
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 SHORT = 1.6
 """Angle [rad] for which the series of `bend` hold; twice that, and four times that, by doubling."""

@@ -5,7 +5,7 @@ Each is one formula of numbers that a sum over the waves gives, see `waves.head`
 
 import math
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 LEAST_STRETCH = 0.5
 """Least part of its height to which a layer of water is squeezed: waves that break reach 0.55."""

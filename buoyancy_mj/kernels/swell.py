@@ -9,9 +9,8 @@ polynomial that holds all others, see `local`.
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels import planning
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.hulls import DEGREE, LIMIT, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.polynomials import add_at_many, add_series, on_ray, set_along_ray
 from buoyancy_mj.kernels.series import bend, doublings

@@ -21,7 +21,8 @@ exact on triangles, and from them follows the integral of any product of two lin
 import math
 
 import numpy as np
-from numba import njit
+
+from buoyancy_mj.kernels.compiling import njit
 
 FIRST_FACE, END_FACE, FIRST_VERTEX, END_VERTEX, BEHIND, SPAN = range(6)
 """Columns of the span of a node, and how many: its faces, its vertices, and the node behind all

@@ -10,9 +10,8 @@ In waves slope and rate of the surface are taken at that centroid.
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels.clip import VOLUME, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import rotate_back
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY, OMEGA, phase_at
 

@@ -93,7 +93,7 @@ def load_module(module: ir.Module) -> Any:
 def compile_kernel(kernel: Callable[..., Any]) -> Any:
     """A kernel as a C function with its `address`, compiled or read from an earlier run."""
     result, kinds = _signature(kernel)
-    return numba.cfunc(result(*kinds), cache=True)(kernel)
+    return numba.cfunc(result(*kinds), cache=True, _nrt=False)(kernel)
 
 
 def _signature(kernel: Callable[..., Any]) -> tuple[Any, list[Any]]:

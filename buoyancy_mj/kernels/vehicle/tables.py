@@ -1,9 +1,9 @@
 """Tables whose rows rise in one column: straight between rows, held beyond the ends."""
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def interpolate(table, into, out, value):
     """Column `out` of a table (n, m) where column `into`, which never falls, has a value."""
     low, high = 0, table.shape[0] - 1
