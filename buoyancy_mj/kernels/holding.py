@@ -10,12 +10,12 @@ import math
 
 import numpy as np
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import difference
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_mobility(joints, mass_matrix, b, rows, out):
     """Write J M^-1 J^T of a body to `out` (6, 6); `rows` (6, nv) are worked in.
 

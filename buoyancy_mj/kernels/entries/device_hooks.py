@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import int32, int64, void
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.entries.pointers import call, set_word, word
 from buoyancy_mj.kernels.entries.views import view
 from buoyancy_mj.kernels.vehicle.devices import ALIVE, CHANGES, MODEL, Device
@@ -37,14 +37,14 @@ def _slot(data, instance, context):
     return word(data + view(context, DeviceContext).plugin_data) + 8 * instance
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def _tell(text, context):
     """Tell the engine what failed; 0 for nothing."""
     if text != 0:
         call(view(context, DeviceContext).error, (text,))
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def _find_device(model, data, instance, context):
     """The address of the device of an instance, of this model and of the waters of now.
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import int32, int64, void
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.entries.passive import act_or_fail
 from buoyancy_mj.kernels.entries.pointers import call, set_word, word
 from buoyancy_mj.kernels.entries.tables import WaterTable
@@ -108,7 +108,7 @@ def _is_of_another(model, data, record):
     return ids[MODEL] != model or ids[SIZES] != _sum_sizes(model, data, record)
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def _sum_sizes(model, data, record):
     """The sum by which other sizes of a model's geoms are noticed."""
     offsets = view(view(record, Record).ids[WATER], WaterTable).offsets

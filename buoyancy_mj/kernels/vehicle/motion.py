@@ -1,6 +1,6 @@
 """How a point of a body moves, and the water around it."""
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.vectors import difference
 from buoyancy_mj.kernels.waves import add_velocity, elevation
@@ -32,7 +32,7 @@ def find_depth(
     return sea.level + elevation(sea.waves, at[0], at[1], time) - at[2]
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def set_water_velocity(
     sea,  # `sea.Sea`
     at,  # (3) [m]

@@ -2,7 +2,7 @@
 
 import math
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vehicle.tables import interpolate
 
 SQUARE, THRUST, TORQUE, CURRENT = range(4)
@@ -27,7 +27,7 @@ def signed_root(square):
     return math.copysign(math.sqrt(abs(square)), square)
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def demand_speed(
     command,  # from the one at which the rotor stands
     deadband,  # to the first command that is heard

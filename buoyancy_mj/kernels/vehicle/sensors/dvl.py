@@ -4,7 +4,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from buoyancy_mj.kernels.arrays import Doubles
-from buoyancy_mj.kernels.compiling import njit, register_jitable
+from buoyancy_mj.kernels.compiling import inner, njit, register_jitable
 from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.motion import find_depth, find_velocity, set_water_velocity
 from buoyancy_mj.kernels.vehicle.sensors.echoes import Echoes, drop_dry, find_end
@@ -60,7 +60,7 @@ def measure_dvl(sensor, equipment, sea):
             mount.truth[LOCK] = WATER
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def _listen_to_bottom(sensor, equipment, at, velocity):
     """Set the speeds along the beams that met something; those beams as bits."""
     echoes, beams = sensor.echoes, 0
@@ -74,7 +74,7 @@ def _listen_to_bottom(sensor, equipment, at, velocity):
     return beams
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def _listen_to_water(sensor, equipment, sea, at, velocity):
     """Set the speeds along the beams through the layer, where it is water; those beams as bits."""
     echoes, water, beams = sensor.echoes, sensor.mount.truth[:LOCK], 0

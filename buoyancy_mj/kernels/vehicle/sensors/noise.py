@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -27,7 +27,7 @@ def mix(word):
     return word ^ (word >> _SHIFTS[2])
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def hash_words(seed, stream, sensor, sample, number):
     """One word of 64 random bits for five whole numbers, mixed in one after the other."""
     word = mix(np.uint64(seed) + _GOLDEN)

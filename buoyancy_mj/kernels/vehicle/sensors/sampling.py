@@ -10,7 +10,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from buoyancy_mj.kernels.arrays import Doubles
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vehicle.sensors.noise import draw_normal
 
 STREAM, TAKEN, SAMPLE, TIME, HELD = range(5)
@@ -60,7 +60,7 @@ def is_held(mount, equipment, sample):
     return held[TAKEN] != 0.0 and held[SAMPLE] == sample and held[TIME] != equipment.time
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def hold_sample(mount, equipment):
     """Read what the last sample read."""
     state, data = equipment.sensing.plugin_state, equipment.sensing.sensordata
@@ -68,7 +68,7 @@ def hold_sample(mount, equipment):
         data[mount.address + n] = state[mount.state + HELD + n]
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@inner
 def take_sample(mount, equipment, sample):
     """Read what was measured, with bias and noise, and hold it."""
     state, data = equipment.sensing.plugin_state, equipment.sensing.sensordata
