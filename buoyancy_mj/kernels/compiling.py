@@ -5,22 +5,18 @@ and one for Python. And it counts references to arrays wherever a function may m
 NamedTuple of a hundred arrays costs much, to compile and to pass on.
 """
 
-from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any
 
 import numba
 from numba import extending
 
-F = TypeVar("F", bound=Callable[..., Any])
 
-
-def njit(**options: Any) -> Callable[[F], F]:
+def njit(**options: Any) -> Any:
     """Numba's `njit` for a kernel, which may make arrays unless `_nrt=False` says otherwise."""
-    decorate: Callable[[F], F] = numba.njit(**{"no_cfunc_wrapper": True, "_nrt": True} | options)
-    return decorate
+    return numba.njit(**{"no_cfunc_wrapper": True, "_nrt": True} | options)
 
 
-def inner(function: F) -> F:
+def inner(function: Any) -> Any:
     """Compile a kernel that makes no arrays and that only kernels call.
 
     There is no way to it from Python: a call from there ends the process.
@@ -28,7 +24,6 @@ def inner(function: F) -> F:
     return njit(cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True)(function)
 
 
-def register_jitable(**options: Any) -> Callable[[F], F]:
-    """Numba's `register_jitable`, for a function that makes no arrays unless its callers may."""
-    decorate: Callable[[F], F] = extending.register_jitable(no_cfunc_wrapper=True, **options)
-    return decorate
+def register_jitable(**options: Any) -> Any:
+    """Numba's `register_jitable`, for a function that is built into those that call it."""
+    return extending.register_jitable(inline="always", **options)
