@@ -25,5 +25,5 @@ def inner(function: Any) -> Any:
 
 
 def register_jitable(**options: Any) -> Any:
-    """Numba's `register_jitable`, for a function that is built into those that call it."""
-    return extending.register_jitable(inline="always", **options)
+    """Numba's `register_jitable`, for a function that makes no arrays unless its callers may."""
+    return extending.register_jitable(no_cfunc_wrapper=True, **options)
