@@ -68,8 +68,13 @@ def _is_module() -> bool:
 
 
 def _is_script() -> bool:
-    """Whether the script that pip has installed runs, not another whose name begins as its."""
-    return os.path.basename("".join(sys.argv[:1])).removesuffix(".exe") == "buoyancy-mj"
+    """Whether the script that pip has installed runs, not another whose name begins as its.
+
+    A process that such a script spawns is given its arguments, but was not started with them.
+    """
+    script = "".join(sys.argv[:1])
+    is_ours = os.path.basename(script).removesuffix(".exe") == "buoyancy-mj"
+    return is_ours and script in sys.orig_argv
 
 
 IS_COMMAND_LINE = _prepare()

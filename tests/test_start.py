@@ -13,12 +13,15 @@ SCIPY = ("scipy.linalg", "scipy.optimize", "scipy.sparse", "scipy.spatial")
 """Parts of SciPy, which imports each when it is first used."""
 
 
-def imported_by(code, *arguments):
+def imported_by(code):
     """Names of the modules that another process has imported after some code."""
-    told = f"{code}\nimport sys; print('MODULES', *sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", told, *arguments], capture_output=True, text=True, check=True
-    )
+    return modules_of("-c", f"{code}\nimport sys; print('MODULES', *sys.modules)")
+
+
+def modules_of(*arguments):
+    """The names of modules that another process prints at its end."""
+    process = [sys.executable, *map(str, arguments)]
+    done = subprocess.run(process, capture_output=True, text=True, check=True)
     return set(done.stdout.rpartition("MODULES")[2].split())
 
 
@@ -30,14 +33,21 @@ def test_an_import_waits_for_no_heavy_library():
     assert not [name for name in modules if name.startswith("buoyancy_mj.viz")]
 
 
-def test_help_waits_for_neither_numba_nor_mujoco():
-    code = (
-        "import sys; sys.argv[0] = 'buoyancy-mj'\n"
+def test_help_waits_for_neither_numba_nor_mujoco(tmp_path):
+    command = tmp_path / "buoyancy-mj"
+    command.write_text(
         "from buoyancy_mj.cli import app\n"
-        "app(['--help'], standalone_mode=False)"
+        "app(['--help'], standalone_mode=False)\n"
+        "import sys; print('MODULES', *sys.modules)"
     )
-    modules = imported_by(code)
+    modules = modules_of(command)
     assert not modules & {*HEAVY, "scipy", "numpy", "numba", "mujoco"}
+
+
+def test_a_process_that_the_command_spawns_knows_the_plugins():
+    # it is given the arguments of the command
+    code = "import sys; sys.argv = ['/usr/bin/buoyancy-mj', 'run']\nimport buoyancy_mj"
+    assert "buoyancy_mj.vehicle.plugins" in imported_by(code)
 
 
 def test_the_plugins_are_known_after_an_import_alone():

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning
-from buoyancy_mj.meshes.components import label_components
 
 _KEEP_VISUAL = '<mujoco><compiler discardvisual="false"/></mujoco>'
 """What makes MuJoCo keep the visual geometry of a URDF."""
@@ -66,6 +65,8 @@ def _find_bare_links(root: ElementTree.Element) -> tuple[list[str], bool]:
 
     A body is what fixed joints hold together.
     """
+    import trimesh
+
     links = root.findall("link[@name]")
     index = {link.get("name"): i for i, link in enumerate(links)}
     ends = [
@@ -73,7 +74,7 @@ def _find_bare_links(root: ElementTree.Element) -> tuple[list[str], bool]:
         for joint in root.findall("joint[@type='fixed']")
     ]
     edges = np.array([pair for pair in ends if len(pair) == 2 and None not in pair], np.int64)
-    bodies = label_components(edges, len(links)).tolist()
+    bodies = trimesh.graph.connected_component_labels(edges.reshape(-1, 2), len(links)).tolist()
 
     # the bodies that have collision geometry, and the links that are drawn on others
     solid = {
