@@ -6,15 +6,15 @@ import sys
 _NAME = "buoyancy_mj"
 
 
-def _prepare() -> None:
-    """Make this process safe, if it was started as the command line of this package.
+def _prepare() -> bool:
+    """Make this process safe if it was started as our command line; say whether it was.
 
     `python -m buoyancy_mj` looks for modules in the working folder first, where a file may have the
     name of any module that is imported. Ctrl-C during an import would leave a traceback, or go by.
     """
     is_module = _is_module()
     if not is_module and not os.path.basename("".join(sys.argv[:1])).startswith("buoyancy-mj"):
-        return
+        return False
     if is_module and not sys.flags.safe_path:
         # where Python has put the working folder
         del sys.path[0]
@@ -37,6 +37,7 @@ def _prepare() -> None:
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         # some modules catch whatever is raised while they are imported
         signal.signal(signal.SIGINT, lambda *_: os._exit(130))
+    return is_module or _is_script()
 
 
 def _drop_empty_parts() -> None:
@@ -66,4 +67,15 @@ def _is_module() -> bool:
     )
 
 
-_prepare()
+def _is_script() -> bool:
+    """Whether the script that pip has installed runs, not another whose name begins as its.
+
+    A process that such a script spawns is given its arguments, but was not started with them.
+    """
+    script = "".join(sys.argv[:1])
+    is_ours = os.path.basename(script).removesuffix(".exe") == "buoyancy-mj"
+    return is_ours and script in sys.orig_argv
+
+
+IS_COMMAND_LINE = _prepare()
+"""Whether this process is the command line of this package."""

@@ -5,7 +5,6 @@ repository; the reference of public names, one page for each room; the keys of a
 plugin, from the dataclasses that read them. A public name without a docstring ends the build.
 """
 
-import ast
 import dataclasses
 import html
 import math
@@ -23,6 +22,7 @@ from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
+from buoyancy_mj._names import read_homes
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.loads.damping import VISCOUS, Damping
 from buoyancy_mj.records import field_docs
@@ -138,12 +138,9 @@ def reference_pages() -> dict[str, str]:
 def public_names() -> dict[str, list[str]]:
     """The names that `from buoyancy_mj import` gives, by the room that they come from."""
     rooms: dict[str, list[str]] = {}
-    for node in ast.parse((ROOT / "buoyancy_mj" / "__init__.py").read_text()).body:
-        if isinstance(node, ast.ImportFrom) and node.module.startswith("buoyancy_mj."):
-            room = node.module.split(".")[1]
-            public = [alias.name for alias in node.names if alias.asname == alias.name]
-            rooms.setdefault(room, []).extend(public)
-    return {room: names for room, names in rooms.items() if names}
+    for name, module in read_homes(str(ROOT / "buoyancy_mj" / "__init__.py")).items():
+        rooms.setdefault(module.split(".")[1], []).append(name)
+    return rooms
 
 
 def undocumented(item: griffe.Object | griffe.Alias) -> Iterator[str]:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import errno
+import importlib
 import inspect
 import itertools
 import os
@@ -32,6 +33,7 @@ from buoyancy_mj import (
 )
 from buoyancy_mj.cli import app
 from buoyancy_mj.cli.flags import flag_of
+from buoyancy_mj.cli.group import MODULES
 from buoyancy_mj.errors import BuoyancyError, describe
 from buoyancy_mj.loads.coefficients import CoefficientsFile
 from buoyancy_mj.loads.damping import VISCOUS
@@ -320,6 +322,8 @@ class Flag(typing.NamedTuple):
 
 def find_flags():
     """All flags of all commands that take values."""
+    for module in set(MODULES.values()):
+        importlib.import_module(f"buoyancy_mj.cli.{module}")
     for info in app.registered_commands:
         command = info.name or info.callback.__name__
         for parameter in inspect.signature(info.callback).parameters.values():

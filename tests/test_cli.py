@@ -1,6 +1,7 @@
 import importlib.metadata
 import json
 import os
+import pkgutil
 import re
 import shlex
 import signal
@@ -13,7 +14,9 @@ import typer
 from typer.testing import CliRunner
 
 import buoyancy_mj
+from buoyancy_mj import cli
 from buoyancy_mj.cli import app
+from buoyancy_mj.cli.group import MODULES
 from buoyancy_mj.scenes import catalog
 
 BOX = """<mujoco><worldbody>
@@ -271,12 +274,22 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
     assert subprocess.run(verify, capture_output=True, check=False).returncode == 0
 
 
-def test_help_names_every_command(run):
+def test_help_names_every_command_and_what_it_does(run):
     output = run("--help").stdout
-    commands = typer.main.get_command(app).commands
-    assert commands
-    for name in commands:
-        assert re.search(rf"^  {name}  ", output, re.MULTILINE), name
+    group = typer.main.get_command(app)
+    for name in group.list_commands(None):
+        begun = group.get_command(None, name).help[:30]
+        assert re.search(rf"^  {name}  +{re.escape(begun)}", output, re.MULTILINE), name
+
+
+def test_every_command_of_every_module_is_found():
+    for module in pkgutil.iter_modules(cli.__path__):
+        importlib.import_module(f"buoyancy_mj.cli.{module.name}")
+    registered = {
+        typer.main.get_command_name(info.name or info.callback.__name__)
+        for info in app.registered_commands
+    }
+    assert registered == set(MODULES)
 
 
 def test_version_is_that_of_the_installed_package(run):

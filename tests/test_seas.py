@@ -283,7 +283,9 @@ def test_tiles_keep_their_bound(radius):
     for x, y in (places.T, (places[:9] * 1e-3).T):
         out, room = np.zeros(len(x)), np.empty((2, len(x)))
         tiles.add_elevations(*around, (0.3, -0.2), x, y, len(x), 0.7, *room, out)
-        one_by_one = [tiles.tangent_at(*around, 0.3 + a, b - 0.2, 0.7)[0] for a, b in zip(x, y)]
+        one_by_one = [
+            tiles.tangent_at(*around, 0.3 + a, b - 0.2, 0.7)[0] for a, b in zip(x, y, strict=True)
+        ]
         assert out == pytest.approx(one_by_one, abs=2 * sea_tiles.ACCURACY * radius)
 
 

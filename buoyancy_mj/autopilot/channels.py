@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from buoyancy_mj.autopilot.motor_frames import CUSTOM, MOTOR_FRAMES, Motor
 from buoyancy_mj.autopilot.packets import CHANNELS
@@ -114,7 +114,7 @@ def _match(
     alike = np.array([[_compare_turns(m, turn) for turn in turns] for m in motors])
     agreement = pushes + alike
     channels = []
-    for i, j in zip(*linear_sum_assignment(-np.abs(agreement)), strict=True):
+    for i, j in zip(*scipy.optimize.linear_sum_assignment(-np.abs(agreement)), strict=True):
         motor, thruster = motors[i], thrusters[j]
         sign = 1.0 if agreement[i, j] > 0.0 else -1.0
         turns_it = np.abs(motor.turn).max() >= LEAST_FACTOR

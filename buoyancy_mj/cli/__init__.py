@@ -5,19 +5,4 @@ Out: tables, JSON, recordings and pages, an exit status, and errors as one sente
 May import: every other room.
 """
 
-# each adds its commands, in this order of the help
-from buoyancy_mj.cli import runs as runs  # isort: split
-
-from buoyancy_mj.cli import inspections as inspections  # isort: split
-
-from buoyancy_mj.cli import ballasts as ballasts  # isort: split
-
-from buoyancy_mj.cli import autopilots as autopilots  # isort: split
-
-from buoyancy_mj.cli import sweeps as sweeps  # isort: split
-
-from buoyancy_mj.cli import papers as papers  # isort: split
-
-from buoyancy_mj.cli import validations as validations  # isort: split
-
-from buoyancy_mj.cli.application import app as app
+from buoyancy_mj.cli.group import app as app

@@ -1,4 +1,4 @@
-"""The application: how its commands are registered, and how they report errors."""
+"""How commands are registered with the application, and how they report errors."""
 
 import errno
 import functools
@@ -8,19 +8,18 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Annotated, Any, NoReturn
+from typing import Any, NoReturn
 
 import mujoco
 import typer
 
-from buoyancy_mj import __version__
 from buoyancy_mj.cli.console import err, print_line
 from buoyancy_mj.cli.flags import check_texts, collect_flags, spread_flags
+from buoyancy_mj.cli.group import app
 from buoyancy_mj.cli.signals import Stop, raise_later, raise_signals
 from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import BuoyancyError
-
-app = typer.Typer(no_args_is_help=True, rich_markup_mode=None)
+from buoyancy_mj.vehicle import plugins as plugins
 
 
 def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
@@ -49,25 +48,6 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
         return app.command(name)(run)
 
     return register
-
-
-def _print_version(asked: bool) -> None:
-    """Print the version of this package, and end."""
-    if asked:
-        typer.echo(f"buoyancy-mj {__version__}")
-        raise typer.Exit
-
-
-@app.callback()
-def main(
-    _version: Annotated[
-        bool,
-        typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
-        ),
-    ] = False,
-) -> None:
-    """Put water into MuJoCo."""
 
 
 @contextmanager

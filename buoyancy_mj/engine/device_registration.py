@@ -14,6 +14,7 @@ from buoyancy_mj.engine import compiled, layout, presence
 from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.device_kinds import KINDS, DeviceKind
 from buoyancy_mj.engine.devices import resolve_device
+from buoyancy_mj.engine.late_hooks import make_hook
 from buoyancy_mj.engine.plugin_struct import register_plugin
 from buoyancy_mj.hulls.plugins import note_plugin
 from buoyancy_mj.kernels.entries import device_hooks
@@ -55,7 +56,7 @@ class _Hooks:
                 layout.symbol("mju_error"),
             )
         )
-        self._closures = [Closure(hook, self._context.address) for hook in device_hooks.BOUND]
+        self._closures = [make_hook(hook, self._context.address) for hook in device_hooks.BOUND]
         self._counts: dict[tuple[Any, int], Closure] = {}
         self.functions = {
             hook.__name__: closure.address
@@ -68,7 +69,7 @@ class _Hooks:
         """Address of a hook that a number is bound to."""
         key = hook, number
         if key not in self._counts:
-            self._counts[key] = Closure(hook, number)
+            self._counts[key] = make_hook(hook, number)
         address: int = self._counts[key].address
         return address
 

@@ -8,11 +8,11 @@ import mujoco
 from buoyancy_mj.engine import compiled, layout
 from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.instances import PLUGIN
+from buoyancy_mj.engine.late_hooks import make_hook
 from buoyancy_mj.engine.model_memory import MODEL_ARRAYS
 from buoyancy_mj.engine.plugin_struct import register_plugin
 from buoyancy_mj.engine.waters import LOCK, find_water, is_making_water
 from buoyancy_mj.kernels.entries import plugin_hooks
-from buoyancy_mj.kernels.entries.closures import Closure
 from buoyancy_mj.kernels.entries.views import Table
 from buoyancy_mj.kernels.passes import ALIVE, MODEL, WATER
 from buoyancy_mj.settings.config import INSTANCE, KEYS
@@ -67,7 +67,7 @@ class _Engine:
         )
         bound = {"init", "destroy", "copy", "compute"}
         self._functions = {
-            hook.__name__: Closure(
+            hook.__name__: make_hook(
                 hook, *([self._context.address] if hook.__name__ in bound else [])
             )
             for hook in plugin_hooks.HOOKS

@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
+
+from buoyancy_mj.meshes.components import label_components
 
 _JOINING = (int(mujoco.mjtEq.mjEQ_CONNECT), int(mujoco.mjtEq.mjEQ_WELD))
 """Equality constraints that hold two bodies together."""
@@ -44,7 +45,7 @@ def group_floating_bodies(model: mujoco.MjModel) -> tuple[NDArray[np.int64], ...
     labels = np.arange(model.ntree)
     edges = _find_joined_trees(model)
     if edges:
-        labels = trimesh.graph.connected_component_labels(np.array(edges), model.ntree)
+        labels = label_components(np.array(edges, np.int64), model.ntree)
     return tuple(
         np.flatnonzero(np.isin(model.body_treeid, np.flatnonzero(labels == label)))
         for label in dict.fromkeys(labels.tolist())

@@ -7,9 +7,7 @@ from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.files import replace_file, require_own
@@ -62,6 +60,8 @@ def embed_meshes(
     Raises:
         ModelError: a file cannot be written.
     """
+    from scipy.spatial.transform import Rotation
+
     copy = spec.copy()
     assets = {asset.name: asset for asset in copy.meshes}
     asset_folder = Path(copy.modelfiledir or ".").resolve() / copy.meshdir
@@ -79,6 +79,8 @@ def embed_meshes(
 
 def _write_obj(vertices: NDArray[np.float64], faces: NDArray[np.int64], path: Path) -> None:
     """Write a mesh as a Wavefront file."""
+    import trimesh
+
     solid = trimesh.Trimesh(vertices, faces, process=False)
     text = trimesh.exchange.obj.export_obj(solid, include_normals=False, digits=9)
     try:

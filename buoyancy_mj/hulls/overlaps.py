@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import manifold3d
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.hulls.hull import Hull, group_by_body
 from buoyancy_mj.meshes.cache import Form, recall
+from buoyancy_mj.meshes.components import label_components
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.overlaps import find_close_pairs
 from buoyancy_mj.meshes.surface import to_manifold
@@ -102,9 +102,7 @@ def _join_hulls(hulls: Sequence[Hull]) -> _Joints:
     # groups of hulls that overlap, directly or through others
     close = find_close_pairs([hull.mesh_in_body for hull in hulls])
     edges = [(i, j) for i, j in close if _overlap(hulls, i, j, solid_of)]
-    labels = trimesh.graph.connected_component_labels(
-        np.array(edges, np.int64).reshape(-1, 2), len(hulls)
-    )
+    labels = label_components(np.array(edges, np.int64), len(hulls))
 
     # one hull, or one for each fill, of each group
     parts: list[_Part] = []

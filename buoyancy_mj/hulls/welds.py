@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.bodies import Bond, find_moving_bodies, list_bonds
+from buoyancy_mj.meshes.components import label_components
 
 _WELD = int(mujoco.mjtEq.mjEQ_WELD)
 _SITE = int(mujoco.mjtObj.mjOBJ_SITE)
@@ -64,7 +64,7 @@ def group_welded_bodies(model: mujoco.MjModel, bodies: Sequence[int]) -> tuple[W
 
     # what moves as one, by the bodies that have joints
     ends = np.array([model.body_weldid[list(weld.bodies)] for weld in welds], np.int64)
-    labels = trimesh.graph.connected_component_labels(ends, model.nbody)
+    labels = label_components(ends, model.nbody)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     groups = []

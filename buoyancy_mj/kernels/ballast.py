@@ -14,11 +14,11 @@ of the water as it stands in the tank of an upright body, see `fills`.
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels import fills
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.clip import CX, CY, CZ, VOLUME
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.fills import Fills
 from buoyancy_mj.kernels.flooding import BLADDER, find_flow
 from buoyancy_mj.kernels.inertia import add_matrix, set_to_body

@@ -13,9 +13,8 @@ that a block which the surface cuts is as good as others; nobody asks for it the
 import math
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.polynomials import (
     deepen,
     on_powers,
@@ -29,9 +28,10 @@ from buoyancy_mj.kernels.still_water import settle
 from buoyancy_mj.kernels.tiles import set_phases, sum_products
 
 SIDE, REACH, FALL, DEPTH, WHOLE, TIDAL, SHALLOW = range(7)
-"""Numbers of `Blocks.layout`: side of a block [m]; half the side of the cube in which its polynomial
-holds [m]; `still_water.decay` of the waves; the depth of the water; what the waves take off the mean
-head at the still level; whether all the water rises and falls; whether any wave feels the bottom."""
+"""Numbers of `Blocks.layout`: side of a block [m]; half the side of the cube in which its
+polynomial holds [m]; `still_water.decay` of the waves; the depth of the water; what the waves take
+off the mean head at the still level; whether all the water rises and falls; whether any wave feels
+the bottom."""
 DEGREE = 4
 """Degree of the polynomial of the head."""
 WAVE_DEGREE = 5
@@ -46,15 +46,16 @@ SOLID = size_in_space.py_func(WAVE_DEGREE)
 """Coefficients of all its layers."""
 K, BOTTOM, SQUARE, TIDE, TAYLOR = range(5)
 """Rows of `Blocks.waves`: wave number [rad/m]; `still_water.seabed`; k tanh(k h) a^2 / 2; the
-amplitude of what raises all the water, else 0; and from TAYLOR on what the cosine or the sine of the
-phase adds to each coefficient of a layer."""
+amplitude of what raises all the water, else 0; and from TAYLOR on what the cosine or the sine of
+the phase adds to each coefficient of a layer."""
 SAMPLES = 64
 """Points at which the head in a block is found."""
 ALONG, DOWN = 16, 4
 """Blocks along a side of the store, and along its height."""
 MIDDLE_X, MIDDLE_Y, MIDDLE_Z, INSTANT, HEAD = range(5)
 """Columns of `BlockStore.found`: the middle of a block, from the still level [m], and the instant,
-which say which block it is; and from HEAD on its polynomial, in parts of `REACH` from the middle."""
+which say which block it is; and from HEAD on its polynomial, in parts of `REACH` from the middle.
+"""
 ETA, STILL, AWAY, UP, STRAIN, OVER, BEND, LESS, LINE, LEVEL, FOUND = range(11)
 """Rows of `BlockStore.room` at the points: the elevation; a guess of the height in still water, and
 that from the middle; the water's rise and its slope, the rest of the head and its slope, and what
@@ -80,8 +81,8 @@ class BlockStore(NamedTuple):
     found: Annotated[Doubles, (ALONG * ALONG * DOWN, HEAD + NUMBERS)]
     """Columns `MIDDLE_X` to `HEAD` and behind."""
     sums: Annotated[Doubles, (12, "w")]
-    """Cosines and sines of the phases (2); these times what fades with depth (8) and its even and odd
-    powers (2); scratch."""
+    """Cosines and sines of the phases (2); these times what fades with depth (8), and its even and
+    odd powers (2); scratch."""
     room: Annotated[Doubles, (14, SAMPLES)]
     """Points of a block in rows of their own (3), behind rows `ETA` to `FOUND`; scratch."""
     solid: Annotated[Doubles, (3 * SOLID,)]
@@ -91,7 +92,7 @@ class BlockStore(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def find_block(layout, found, x, y, z):
+def find_block(layout, x, y, z):
     """Where the block at a place stands in the store, and its middle."""
     side = layout[SIDE]
     i, j, k = math.floor(x / side), math.floor(y / side), math.floor(z / side)
@@ -267,7 +268,7 @@ def _guess(z, eta, fall, depth):
 def head_at(sea, blocks, store, x, y, z, time, dynamic):
     """The head at a place; see `fill` for the arguments."""
     layout, found = blocks.layout, store.found
-    b, mx, my, mz = find_block(layout, found, x, y, z)
+    b, mx, my, mz = find_block(layout, x, y, z)
     if not is_known(found, b, mx, my, mz, time):
         fill(sea, blocks, store, b, mx, my, mz, time, dynamic)
     return head_in(layout, found, b, x, y, z)
@@ -296,7 +297,7 @@ def head_in(layout, found, b, x, y, z):
 def quadratic_in(layout, found, b, x, y, z):
     """The head of a block about a place, as a quadratic.
 
-    Returns its value, its gradient (3), and its coefficients of x^2, y^2, z^2, x y, x z and y z (6).
+    Returns its value, its gradient (3), and its coefficients of x^2, y^2, z^2, x y, x z and y z.
     """
     scale = 1.0 / layout[REACH]
     u, v = (x - found[b, MIDDLE_X]) * scale, (y - found[b, MIDDLE_Y]) * scale

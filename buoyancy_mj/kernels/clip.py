@@ -25,10 +25,12 @@ there x, y and d say all of a corner, since z is the height of the plane less d.
 
 import math
 
-from numba import njit, uint64
+from numba import uint64
 
 from buoyancy_mj.kernels import swell, tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.cuts import MOST, add, nothing, subtract, sum_cuts
+from buoyancy_mj.kernels.halving import split
 from buoyancy_mj.kernels.hulls import (
     ALLOWED,
     EDGE,
@@ -39,7 +41,6 @@ from buoyancy_mj.kernels.hulls import (
     WHOLE_MIDDLE,
     WHOLE_VOLUME,
 )
-from buoyancy_mj.kernels.halving import split
 from buoyancy_mj.kernels.leaves import (
     count_wet,
     faces_of,
@@ -216,7 +217,18 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 waiting += 1
                 if waiting == MOST:
                     sums, extra = _take(
-                        cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near
+                        cuts,
+                        waiting,
+                        sums,
+                        extra,
+                        wavy,
+                        plane,
+                        rest,
+                        layout,
+                        sea,
+                        found,
+                        phases,
+                        near,
                     )
                     waiting = 0
 

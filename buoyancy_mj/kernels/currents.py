@@ -1,13 +1,13 @@
 """A current as rows of numbers at depths or at times: straight between rows, held beyond them."""
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import inner
 
 PLACE, VELOCITY, TIMED = 0, 1, 4
 """Columns of a row: a depth [m] or a time [s]; the velocity (3) there [m/s]; and 0 for depths, 1
 for times."""
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_current(rows, depth, time, out):
     """Write the velocity [m/s] of the current at a depth [m] and a time [s] to `out` (3,).
 
@@ -20,7 +20,7 @@ def set_current(rows, depth, time, out):
             out[c] += share * (rows[at + 1, VELOCITY + c] - rows[at, VELOCITY + c])
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_rate(rows, time, out):
     """Write how fast the current grows with time [m/s^2] to `out` (3,)."""
     out[:] = 0.0
@@ -33,7 +33,7 @@ def set_rate(rows, time, out):
         )
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _between(rows, place):
     """The row before a place, and how far the place is to the next; 0 beyond the ends."""
     low, high = 0, rows.shape[0] - 1

@@ -10,7 +10,7 @@ its depth w under the surface. All is from the middle of the hull, along the wor
 
 from typing import NamedTuple
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 MOST = 64
 """How many cut triangles wait at most until they are summed."""

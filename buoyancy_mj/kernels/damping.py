@@ -4,10 +4,10 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.clip import CX, VOLUME
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.rigid import (
     find_inertias,

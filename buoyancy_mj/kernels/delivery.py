@@ -1,9 +1,7 @@
 """What a pass of the water does to the engine: its forces, and its mass matrix."""
 
-import numpy as np
-from numba import njit
-
 from buoyancy_mj.kernels import ballast, inertia, wrenches
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.multibody import PGS
 from buoyancy_mj.kernels.passes import AUGMENTED
 
@@ -43,7 +41,8 @@ def augment(loads, engine, record):
     if not (wet or filled):
         return UNCHANGED
     record.ids[AUGMENTED] = 1
-    record.inertia[:] = mass
+    for i in range(mass.shape[0]):
+        record.inertia[i] = mass[i]
     dual = engine.option.solver == PGS or engine.option.noslip_iterations > 0
     return AUGMENT_DUAL if dual else AUGMENT
 
@@ -54,4 +53,7 @@ def _is_augmented(mass, record):
 
     The engine may go over a pass again without computing its mass matrix anew.
     """
-    return record.ids[AUGMENTED] != 0 and np.array_equal(mass, record.inertia)
+    same = record.ids[AUGMENTED] != 0
+    for i in range(mass.shape[0]):
+        same = same and mass[i] == record.inertia[i]
+    return same

@@ -8,9 +8,8 @@ and of these few corners, can hold the deepest.
 import math
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import place, rotate_back, triple
 from buoyancy_mj.kernels.waves import elevation, tangent
 

@@ -1,8 +1,7 @@
 """Pressure over a node of the tree, by a quadratic about its middle and the moments of its area."""
 
-from numba import njit
-
 from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import rotate_back
 
 

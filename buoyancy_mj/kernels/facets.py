@@ -6,7 +6,7 @@ is wanted together.
 
 import math
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 MIDDLES, NORMALS, AREAS, FACE_ROWS = 0, 3, 6, 8
 """Rows of `DampingArrays.faces`, and how many: the middle (3) of each face [m], its unit normal

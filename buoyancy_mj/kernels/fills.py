@@ -7,9 +7,8 @@ volume they are cubic polynomials, which is exact for boxes and upright cylinder
 
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.triangles import cut, moments
 from buoyancy_mj.kernels.vectors import triple
 
@@ -47,7 +46,7 @@ class Fills(NamedTuple):
     """Where the faces of each begin, and the end of all."""
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_moments(fills, n, volume, out):
     """Write the moments (9,) of a volume of water in a tank to `out`."""
     low = _find_piece(fills, n, volume)
@@ -57,7 +56,7 @@ def set_moments(fills, n, volume, out):
         out[m] = ((piece[c] * x + piece[c + 1]) * x + piece[c + 2]) * x + piece[c + 3]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_growth(fills, n, volume, out):
     """Write how the moments (9,) grow with the volume of water in a tank to `out`."""
     low = _find_piece(fills, n, volume)
@@ -80,7 +79,7 @@ def _find_piece(fills, n, volume):
     return low
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_matrix(volume, moments_, density, out):
     """Write the inertia of water with some moments, as a rigid body, to `out`, row by row (36,).
 
@@ -149,7 +148,7 @@ def _height(vertices, i, up0, up1, up2):
     return up0 * vertices[i, 0] + up1 * vertices[i, 1] + up2 * vertices[i, 2]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _measure_below(fills, n, up0, up1, up2, level):
     """Volume of a tank below a level, the area of the surface there, and the centroid (3).
 

@@ -8,9 +8,8 @@ form, at any timestep, and stops where the heads are equal. So no flow turns rou
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels import fills
+from buoyancy_mj.kernels.compiling import inner
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.waves import elevation
 
@@ -20,7 +19,7 @@ ATMOSPHERE = 101325.0
 """Pressure of the air [Pa] (ISO 2533)."""
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def find_flow(
     ballast,  # `ballast.Ballast`
     n,  # index of the bladder, tank or compartment
@@ -81,7 +80,7 @@ def find_flow(
     return min(max(mean, -volume / timestep), (capacity - volume) / timestep)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _find_head(ballast, n, volume, outside, opening, geoms, specific_weight):
     """The head [m] that drives water through an opening at a height; positive inwards.
 

@@ -8,10 +8,10 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels import holding
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.polar import PLATE, PROFILE, SECTION, SLOPE, arm, coefficients
 from buoyancy_mj.kernels.vectors import difference, place, rotate, rotate_back, triple

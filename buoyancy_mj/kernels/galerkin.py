@@ -10,9 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import njit
 
 NEAR, MIDDLE, FAR = 1.0, 3.0, 8.0
 """Distance of two triangles, over the sum of their radii, up to which a finer rule sums.

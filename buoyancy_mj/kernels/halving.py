@@ -9,8 +9,7 @@ A triangle stands in a row: for each corner x, y seen from above, its depth d un
 depth w under the surface; then its part of the area of the face that it belongs to.
 """
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.tiles import tangent_at
 
 CORNER, PART, COLUMNS = 4, 12, 13

@@ -9,13 +9,13 @@ centre of mass of the tree, as MuJoCo's `cdof` has velocities.
 import math
 
 import numpy as np
-from numba import njit
 
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import difference
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_mobility(joints, mass_matrix, b, rows, out):
     """Write J M^-1 J^T of a body to `out` (6, 6); `rows` (6, nv) are worked in.
 

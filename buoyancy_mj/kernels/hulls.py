@@ -8,10 +8,10 @@ from buoyancy_mj.kernels.tiles import Tiles
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
 FILL, EDGE, ALLOWED, COLUMNS = 11, 12, 13, 14
-"""Columns of `Hulls.whole`, and how many: volume that the whole hull displaces, its centroid (3), the
-area of its faces, middle (3) and half sides (3) of its bounding box, the part of its volume that
-displaces water, its longest edge, and by how much a straight edge that lies in the surface may be
-off, see `halving` [m]."""
+"""Columns of `Hulls.whole`, and how many: volume that the whole hull displaces, its centroid (3),
+the area of its faces, middle (3) and half sides (3) of its bounding box, the part of its volume
+that displaces water, its longest edge, and by how much a straight edge that lies in the surface may
+be off, see `halving` [m]."""
 
 
 class Hulls(NamedTuple):

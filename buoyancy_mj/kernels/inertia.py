@@ -9,9 +9,9 @@ rest.
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import difference
 from buoyancy_mj.kernels.wet_share import wet_share

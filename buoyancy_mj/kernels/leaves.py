@@ -11,9 +11,10 @@ Indices are unsigned, since Numba asks of a signed one whether it counts from th
 """
 
 import numpy as np
-from numba import njit, uint64
+from numba import uint64
 
 from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.cuts import Sums, set_corner, set_size
 from buoyancy_mj.kernels.halving import CORNER, PART, bends
 

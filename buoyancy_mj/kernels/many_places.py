@@ -6,9 +6,9 @@ Times are (n,), one for each place, or (1,), one for all.
 import math
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels import series
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.waves import (

@@ -4,9 +4,9 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles, Int32s, Truths, Words
+from buoyancy_mj.kernels.compiling import njit
 
 
 class Option(NamedTuple):

@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.clip import CX, CZ, VOLUME
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.damping import holds, relative_velocity
 from buoyancy_mj.kernels.facets import AREAS, BLOCK, PUSHES, add_push, total

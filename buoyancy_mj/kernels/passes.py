@@ -9,9 +9,6 @@ To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArra
 
 from typing import Annotated, NamedTuple
 
-from numba import njit
-from numba.extending import register_jitable
-
 from buoyancy_mj.kernels import (
     ballast,
     damping,
@@ -24,6 +21,7 @@ from buoyancy_mj.kernels import (
 )
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.ballast import Ballast
+from buoyancy_mj.kernels.compiling import njit, register_jitable
 from buoyancy_mj.kernels.damping import DampingArrays
 from buoyancy_mj.kernels.foils import Foils
 from buoyancy_mj.kernels.hulls import Hulls
@@ -122,10 +120,13 @@ def end(engine, record):
             for i in range(6):
                 total[b, i] += cause[b, i]
     record.instant[0] = engine.time
-    record.xipos[:, :] = engine.bodies.xipos
+    xipos = engine.bodies.xipos
+    for b in range(xipos.shape[0]):
+        for i in range(3):
+            record.xipos[b, i] = xipos[b, i]
 
 
-@register_jitable
+@register_jitable()
 def add_buoyancy(arrays):
     """Archimedes' force."""
     loads, record = arrays.loads, arrays.record
@@ -138,7 +139,7 @@ def add_buoyancy(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_wave_pressure(arrays):
     """What the pressure under waves adds to it."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -157,7 +158,7 @@ def add_wave_pressure(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_drag(arrays):
     """Drag that is linear and quadratic in the velocity of a body."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -173,7 +174,7 @@ def add_drag(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_panel_drag(arrays):
     """Drag of each panel of a hull."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -192,7 +193,7 @@ def add_panel_drag(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_radiation(arrays):
     """Damping by the waves that a body makes."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -209,7 +210,7 @@ def add_radiation(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_foils(arrays):
     """Lift and drag of fins, rudders, keels and wings."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -225,7 +226,7 @@ def add_foils(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_reaction(arrays):
     """What added mass does beside its inertia, and what the water keeps of it in an entry."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
@@ -243,7 +244,7 @@ def add_reaction(arrays):
     )
 
 
-@register_jitable
+@register_jitable()
 def add_ballast(arrays):
     """Bladders, and the water in tanks and compartments."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record

@@ -9,7 +9,8 @@ with Hoerner's cross-flow; beyond stall the foil is a flat plate. Coefficients a
 import math
 
 import numpy as np
-from numba import njit
+
+from buoyancy_mj.kernels.compiling import njit
 
 SLOPE, CAMBER, INDUCED, CROSSFLOW, LOST, STALL, BLEND, PROFILE, PLATE, TIPS = range(10)
 """Columns of a section: lift slope of the finite span [1/rad]; sine of the angle of zero lift;

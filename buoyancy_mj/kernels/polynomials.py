@@ -3,7 +3,7 @@
 The coefficients of x^m y^n stand in order of m, then n; those of z^p x^m y^n of p, then m, then n.
 """
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 LARGEST = 8
 """Largest degree."""

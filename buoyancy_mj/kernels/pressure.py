@@ -2,17 +2,18 @@
 
 By a tree of moments: a wet node that is small beside the waves is answered by its moments, with the
 pressure as a quadratic about its middle, see `expansions`; elsewhere triangles are cut at the
-surface and summed at points, see `quadrature`. The pressure itself comes from the blocks of `blocks`.
+surface and summed at points, see `quadrature`. The pressure itself comes from `blocks`.
 """
 
 import math
 
 import numpy as np
-from numba import int64, njit
+from numba import int64
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.blocks import fill, find_block, is_known, quadratic_in
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.expansions import add_node
 from buoyancy_mj.kernels.halving import CORNER, PART, split
 from buoyancy_mj.kernels.hulls import ALLOWED, EDGE, WHOLE_HALF, WHOLE_MIDDLE
@@ -93,7 +94,9 @@ def press_hulls(
 
 
 @njit(cache=True, error_model="numpy")
-def _walk(hulls, h, setting, r, curvature, scratch):
+def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
+    hulls, h, setting, r, curvature, scratch
+):
     """Add nodes and triangles of a hull; `curvature` is a bound of the surface's over it."""
     typical, spans, boxes, moments = hulls.typical, hulls.spans, hulls.boxes, hulls.moments
     vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
@@ -135,7 +138,7 @@ def _walk(hulls, h, setting, r, curvature, scratch):
             most = typical[int(min(top * most, DEPTHS - 1.0))]
         small = wet and not dry and most * size <= SMALL and size > 0.0
         if small:
-            b, mx, my, mz = find_block(sizes, known, x, y, z)
+            b, mx, my, mz = find_block(sizes, x, y, z)
             if not is_known(known, b, mx, my, mz, time):
                 fill(waves, blocks, store, b, mx, my, mz, time, dynamic)
             quadratic = quadratic_in(sizes, known, b, x, y, z)
@@ -185,7 +188,11 @@ def _walk(hulls, h, setting, r, curvature, scratch):
                     if dj > 0.0 or dk > 0.0 or do > 0.0:
                         if count > PLACES - TRIANGLE:
                             count = sum_points(waves, blocks, store, setting, points, count, sums)
-                        p, q, s = _corner_of(stack, top, 0), _corner_of(stack, top, 1), _corner_of(stack, top, 2)
+                        p, q, s = (
+                            _corner_of(stack, top, 0),
+                            _corner_of(stack, top, 1),
+                            _corner_of(stack, top, 2),
+                        )
                         part = scale(stack[top, PART], area)
                         count = add_wet_part(points, count, p, q, s, dj, dk, do, part, most, sums)
                     top -= 1

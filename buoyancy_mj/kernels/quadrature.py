@@ -8,9 +8,8 @@ degree 5 of Radon (1948).
 import math
 from typing import NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.blocks import fill, find_block, head_in, is_known
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
 
@@ -167,7 +166,7 @@ def sum_points(sea, blocks, store, setting, points, count, sums):
     ox, oy, oz = setting.origin
     for n in range(count):
         x, y, z = points[0, n], points[1, n], points[2, n]
-        b, mx, my, mz = find_block(layout, found, x, y, z)
+        b, mx, my, mz = find_block(layout, x, y, z)
         if not is_known(found, b, mx, my, mz, time):
             fill(sea, blocks, store, b, mx, my, mz, time, setting.dynamic)
         head = head_in(layout, found, b, x, y, z)

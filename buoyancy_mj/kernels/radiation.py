@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.clip import CX, VOLUME, WATERPLANE_AREA
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.damping import (
     HEAVE,
     PITCH,

@@ -3,7 +3,9 @@
 import math
 
 import numpy as np
-from numba import boolean, njit
+from numba import boolean
+
+from buoyancy_mj.kernels.compiling import inner, njit
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -150,7 +152,7 @@ def misenclosed(vertices, faces, count):
     return doubled * cell, inverted * cell
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _hit(vertices, faces, low, step, count, listing, places, heights, signs):
     """Count the hits of each ray in `places`; or, listing, write their heights and signs.
 

@@ -15,9 +15,9 @@ NACA TN 321) has it, and carries half of the energy away as spray.
 """
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.clip import CX
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.inertia import set_to_body
 from buoyancy_mj.kernels.multibody import last_dof

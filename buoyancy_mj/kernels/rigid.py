@@ -4,7 +4,7 @@ Ten numbers stand for some bodies as one: mass, centre of mass, and inertia abou
 xy, xz, yz, in the world's axes.
 """
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import inner, njit
 
 
 @njit(cache=True, error_model="numpy")
@@ -38,7 +38,7 @@ def gather(bodies, members):
     return mass, x, y, z, xx, yy, zz, xy, xz, yz
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def gather_group(damping, bodies, rows, parts):
     """Mass, centre of mass and inertia of a group, see `gather`; those of members in rows (k, 10).
 
@@ -69,7 +69,7 @@ def gather_group(damping, bodies, rows, parts):
     return mass, x, y, z, xx, yy, zz, xy, xz, yz
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def rigid_body(damping, bodies, n):
     """Mass of a body with all that is welded to it, and its inertia about each of its axes.
 
@@ -80,7 +80,7 @@ def rigid_body(damping, bodies, n):
     return whole[0], find_inertias(whole, bodies.xmat[damping.bodies[n]])
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def find_motion(damping, bodies, rows, parts, whole, out):
     """Write the motion of the rigid body that has the momentum of a group to `out` (6,).
 

@@ -3,7 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from buoyancy_mj.kernels.compiling import njit
 
 SHORT = 1.6
 """Angle [rad] for which the series of `bend` hold; twice that, and four times that, by doubling."""
@@ -76,7 +77,9 @@ def turn(angle):
     quarters = math.floor(angle * _PER_QUARTER + 0.5)
     x = (angle - quarters * _QUARTER_1) - quarters * _QUARTER_2
     q = x * x
-    sine = x + x * q * (_S3 + q * (_S5 + q * (_S7 + q * (_S9 + q * (_S11 + q * (_S13 + q * _S15))))))
+    sine = x + x * q * (
+        _S3 + q * (_S5 + q * (_S7 + q * (_S9 + q * (_S11 + q * (_S13 + q * _S15)))))
+    )
     cosine = 1.0 + q * (
         _C2 + q * (_C4 + q * (_C6 + q * (_C8 + q * (_C10 + q * (_C12 + q * (_C14 + q * _C16))))))
     )

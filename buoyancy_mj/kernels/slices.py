@@ -1,8 +1,8 @@
 """Parts of a mesh in the order or at the heights that the source paper's methods ask for."""
 
 import numpy as np
-from numba import njit
 
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import rotate, triple
 from buoyancy_mj.kernels.waves import elevation

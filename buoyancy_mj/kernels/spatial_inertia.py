@@ -5,8 +5,7 @@ Velocities are translation, then rotation, along the body's axes and at its orig
 
 import math
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import difference, rotate_back
 
 

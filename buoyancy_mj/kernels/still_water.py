@@ -5,8 +5,7 @@ Each is one formula of numbers that a sum over the waves gives, see `waves.head`
 
 import math
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.series import exponential
 
 LEAST_STRETCH = 0.5

@@ -2,17 +2,17 @@
 
 The plane touches the surface over the middle of the hull.
 
-The rest e(x, y) of the elevation is what the waves have beside that plane: the tiles of `tiles`, and
-the near waves, which are taken one by one.
+The rest e(x, y) of the elevation is what the waves have beside that plane: the tiles of `tiles`,
+and the near waves, which are taken one by one.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels import tiles
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y, ROOM
 from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.series import bend, doublings
@@ -134,8 +134,8 @@ def approach(level, layout, waves, found, phases, origin, r, whole, h, time, nea
 def _gather(layout, waves, found, phases, x, y, r, time, near):
     """Bring the near waves to a hull, and find the plane over its middle.
 
-    Returns the elevation of the tiles there, with its gradient in the world; that of all waves, with
-    its gradient in the hull's frame; how many waves are near; and their largest wave number.
+    Returns the elevation of the tiles there, with its gradient in the world; that of all waves,
+    with its gradient in the hull's frame; how many waves are near; and their largest wave number.
     """
     eta = gx = gy = g0 = g1 = g2 = steepest = 0.0
     held, count = int(layout[tiles.HELD]), waves.shape[1]
@@ -274,9 +274,7 @@ def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, n
                     cuts[_PLACE_X + n] = to_p * cuts[P_X + n] + to_q * cuts[Q_X + n]
                     cuts[_PLACE_Y + n] = to_p * cuts[P_Y + n] + to_q * cuts[Q_Y + n]
                     cuts[_REST + n] = 0.0
-                add_rest(
-                    x, y, count, rest, layout, waves, found, phases, near, e, row, total
-                )
+                add_rest(x, y, count, rest, layout, waves, found, phases, near, e, row, total)
                 for n in range(count):
                     e_dA = part * cuts[_REST + n]
                     mean = height + 0.5 * cuts[_REST + n]

@@ -15,9 +15,8 @@ one. `submersion.sea_tables` chooses the size of the tiles and the degree of the
 import math
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.polynomials import LARGEST, size
 from buoyancy_mj.kernels.series import turn
 
@@ -39,8 +38,8 @@ TILES = ALONG * ALONG
 NUMBERS = size.py_func(LARGEST)
 """Coefficients of a polynomial, at most."""
 MIDDLE_X, MIDDLE_Y, INSTANT, FLAT = range(4)
-"""Columns of `TileStore.found`: the middle of the tile [m], and the instant, which say which tile it
-is; and from FLAT on its polynomial, in parts of `REACH` from the middle."""
+"""Columns of `TileStore.found`: the middle of the tile [m], and the instant, which say which tile
+it is; and from FLAT on its polynomial, in parts of `REACH` from the middle."""
 
 
 class Tiles(NamedTuple):
@@ -96,7 +95,7 @@ def set_phases(waves, count, x, y, time, out):
 
 @njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
 def sum_products(a, i, b, j, count):
-    """The sum of the products of the first `count` numbers of two rows, in an order that is fast."""
+    """The sum of the products of the first `count` numbers of two rows, in any order."""
     total = 0.0
     for w in range(count):
         total += a[i, w] * b[j, w]
@@ -218,6 +217,27 @@ def four_elevations(layout, waves, found, phases, xs, ys, time):
 
 
 @njit(cache=True, error_model="numpy")
+def _add_at_many(layout, found, t, mx, my, scale, x, y, count, row, total, out):
+    """Add a tile's polynomial, from its middle, at `count` places to `out`, by Horner's rule."""
+    degree = int(layout[DEGREE])
+    i = FLAT + size(degree)
+    for n in range(count):
+        total[n] = 0.0
+    for m in range(degree, -1, -1):
+        for n in range(count):
+            row[n] = 0.0
+        for _ in range(degree - m + 1):
+            i -= 1
+            c = found[t, i]
+            for n in range(count):
+                row[n] = row[n] * ((y[n] - my) * scale) + c
+        for n in range(count):
+            total[n] = total[n] * ((x[n] - mx) * scale) + row[n]
+    for n in range(count):
+        out[n] += total[n]
+
+
+@njit(cache=True, error_model="numpy")
 def add_elevations(layout, waves, found, phases, place, x, y, count, time, row, total, out):
     """Add the elevations of tiles at `count` places x, y from a place to `out`.
 
@@ -233,21 +253,7 @@ def add_elevations(layout, waves, found, phases, place, x, y, count, time, row, 
     for n in range(count):
         far = max(far, max(abs(x[n] - mx), abs(y[n] - my)))
     if far <= layout[REACH]:
-        i, degree = FLAT + size(int(layout[DEGREE])), int(layout[DEGREE])
-        for n in range(count):
-            total[n] = 0.0
-        for m in range(degree, -1, -1):
-            for n in range(count):
-                row[n] = 0.0
-            for _ in range(degree - m + 1):
-                i -= 1
-                c = found[t, i]
-                for n in range(count):
-                    row[n] = row[n] * ((y[n] - my) * scale) + c
-            for n in range(count):
-                total[n] = total[n] * ((x[n] - mx) * scale) + row[n]
-        for n in range(count):
-            out[n] += total[n]
+        _add_at_many(layout, found, t, mx, my, scale, x, y, count, row, total, out)
         return
     n = 0
     while n < count:

@@ -21,7 +21,8 @@ exact on triangles, and from them follows the integral of any product of two lin
 import math
 
 import numpy as np
-from numba import njit
+
+from buoyancy_mj.kernels.compiling import njit
 
 FIRST_FACE, END_FACE, FIRST_VERTEX, END_VERTEX, BEHIND, SPAN = range(6)
 """Columns of the span of a node, and how many: its faces, its vertices, and the node behind all
@@ -117,7 +118,10 @@ def _divide(corners, middles, order, low, high):
     part = order[low:high].copy()
     widths = np.empty(3)
     for k in range(3):
-        widths[k] = middles[part, k].max() - middles[part, k].min()
+        least, most = math.inf, -math.inf
+        for i in part:
+            least, most = min(least, middles[i, k]), max(most, middles[i, k])
+        widths[k] = most - least
     thin, widest = np.argmin(widths), np.argmax(widths)
     half, next_widest = low, widths.sum() - widths[thin] - widths[widest]
     if 4.0 * widths[thin] < next_widest:
@@ -125,7 +129,12 @@ def _divide(corners, middles, order, low, high):
     # where nearly all face one way there are no two sides
     if min(half - low, high - half) < (high - low) // 4:
         # stable, so that what lies side by side stays so
-        order[low:high] = part[np.argsort(middles[part, widest], kind="mergesort")]
+        along = np.empty(high - low)
+        for i in range(high - low):
+            along[i] = middles[part[i], widest]
+        ranks = np.argsort(along, kind="mergesort")
+        for i in range(high - low):
+            order[low + i] = part[ranks[i]]
         half = (low + high) // 2
     return half
 

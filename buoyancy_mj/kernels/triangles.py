@@ -3,7 +3,7 @@
 A corner is a tuple (x, y, z, d): its place, and its depth d under the plane that a hull is cut by.
 """
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy", inline="always")

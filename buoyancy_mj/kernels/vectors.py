@@ -5,7 +5,7 @@ An array of places and a rotation make a frame: its origin in the world, and how
 
 import math
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -3,9 +3,8 @@
 import math
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles, Words
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.drafts import Corners, find_draft
 
 NOBODYS, OWN, FIXED = range(3)

@@ -7,9 +7,8 @@ visited.
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.hulls import FILL, WHOLE_MIDDLE
 from buoyancy_mj.kernels.triangles import cut
 from buoyancy_mj.kernels.vectors import place, triple

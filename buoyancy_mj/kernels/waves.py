@@ -8,8 +8,7 @@ A row with kx = ky = 0 is the whole level going up and down, the limit of an inf
 
 import math
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.series import turn
 from buoyancy_mj.kernels.still_water import (
     LEAST_STRETCH,

@@ -10,9 +10,8 @@ In waves slope and rate of the surface are taken at that centroid.
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels.clip import VOLUME, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vectors import rotate_back
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY, OMEGA, phase_at
 
@@ -23,7 +22,7 @@ def wet_share(centres, b, volume):
     return min(centres[b, VOLUME] / volume, 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_gradient(
     hulls,  # indices of the hulls of the body
     wet,  # (h, 8) submersion of all hulls

@@ -6,9 +6,8 @@ body, in the world's axes: what MuJoCo's xfrc_applied holds.
 
 import math
 
-from numba import njit
-
 from buoyancy_mj.kernels.clip import CX, CY, CZ, VOLUME
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import difference, rotate
 

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.special import ellipe
 
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
 
@@ -49,7 +49,7 @@ def _normal_mass(foil: PlacedFoil, density: float) -> float:
     """Added mass along the normal [kg]."""
     short, long = sorted((foil.span, foil.chord))
     if foil.elliptic:
-        integral = float(ellipe(1.0 - (short / long) ** 2))
+        integral = float(scipy.special.ellipe(1.0 - (short / long) ** 2))
         return math.pi / 6.0 * density * long * short**2 / integral
     share = float(np.interp(short / long, _SLENDERNESS, _SHARE))
     return 0.25 * math.pi * density * short**2 * long * share

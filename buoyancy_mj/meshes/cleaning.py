@@ -1,11 +1,11 @@
 """Cleaning: one vertex at each place, no useless triangle, closed seams, all wound alike."""
 
 import numpy as np
-import trimesh
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from buoyancy_mj.errors import MeshError
+from buoyancy_mj.meshes.components import label_components
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.surface import Surface, boundary_edges, compact, directed_edges
 
@@ -57,8 +57,8 @@ def close_seams(report: Diagnosis, v: NDArray[np.float64], f: NDArray[np.int64])
 
         # vertices that lie together become the first of them
         rim = np.unique(open_edges)
-        pairs = KDTree(v[rim]).query_pairs(distance * longest, output_type="ndarray")
-        labels = trimesh.graph.connected_component_labels(pairs, len(rim))
+        pairs = scipy.spatial.KDTree(v[rim]).query_pairs(distance * longest, output_type="ndarray")
+        labels = label_components(pairs, len(rim))
         _, first, group = np.unique(labels, return_index=True, return_inverse=True)
         renumbered = np.arange(len(v))
         renumbered[rim] = rim[first[group]]
@@ -82,6 +82,9 @@ def wind_alike(
     before = len(boundary_edges(f))
     if not before:
         return f
+
+    import trimesh
+
     mesh = trimesh.Trimesh(v, f, process=False)
     trimesh.repair.fix_winding(mesh)
     wound = np.asarray(mesh.faces, np.int64)

@@ -1,9 +1,8 @@
 """The convex hull of a mesh, closed however slender its facets are."""
 
 import numpy as np
-import scipy.spatial
+import scipy
 from numpy.typing import NDArray
-from scipy.sparse import csgraph, csr_array
 
 from buoyancy_mj.errors import MeshError
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -42,8 +41,8 @@ def _wind_alike(facets: NDArray[np.int32], neighbours: NDArray[np.int32]) -> NDA
 
     # from the first facet on, each after one of its neighbours
     rows = np.repeat(np.arange(len(facets)), 3)
-    links = csr_array((np.ones(len(rows)), (rows, neighbours.ravel())))
-    order, before = csgraph.breadth_first_order(links, 0)
+    links = scipy.sparse.csr_array((np.ones(len(rows)), (rows, neighbours.ravel())))
+    order, before = scipy.sparse.csgraph.breadth_first_order(links, 0)
     differs = (same & (neighbours == before[:, None])).any(axis=1)
     turned = np.zeros(len(facets), bool)
     for facet in order[1:]:

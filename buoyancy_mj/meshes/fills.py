@@ -5,8 +5,8 @@ import functools
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from buoyancy_mj.kernels import fills
 from buoyancy_mj.kernels.arrays import conform
@@ -63,7 +63,7 @@ def measure_fill(mesh: TriMesh, up: NDArray[np.float64]) -> FillCurve:
 
     # knots where nothing lies between two levels are one
     kept = np.concatenate([[True], np.diff(table[:, 0]) > 1e-9 * table[-1, 0]])
-    curve = CubicSpline(table[kept, 0], table[kept, 1:])
+    curve = scipy.interpolate.CubicSpline(table[kept, 0], table[kept, 1:])
     return FillCurve(table[kept, 0], np.moveaxis(curve.c, 0, -1))
 
 

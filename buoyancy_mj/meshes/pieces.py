@@ -2,10 +2,10 @@
 
 import manifold3d
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels.rays import misenclosed
+from buoyancy_mj.meshes.components import label_components
 from buoyancy_mj.meshes.diagnosis import Diagnosis
 from buoyancy_mj.meshes.surface import (
     Surface,
@@ -63,7 +63,7 @@ def turn_outward(
 
 def _split(v: NDArray[np.float64], f: NDArray[np.int64]) -> list[NDArray[np.int64]]:
     """Group the faces of a surface by the pieces that they are connected to."""
-    labels = trimesh.graph.connected_component_labels(directed_edges(f), len(v))[f[:, 0]]
+    labels = label_components(directed_edges(f), len(v))[f[:, 0]]
     order = np.argsort(labels, kind="stable")
     return np.split(f[order], np.flatnonzero(np.diff(labels[order])) + 1)
 

@@ -17,7 +17,6 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -32,6 +31,8 @@ RINGS = 8
 
 def box(half_sizes: ArrayLike) -> TriMesh:
     """A box from its half sizes (3,) [m], as in MuJoCo."""
+    import trimesh
+
     unit = trimesh.creation.box(extents=(2.0, 2.0, 2.0))
     return TriMesh(unit.vertices * np.asarray(half_sizes, float), unit.faces)
 
@@ -90,6 +91,8 @@ class _Ring(NamedTuple):
 @functools.cache
 def _unit_ball() -> TriMesh:
     """A sphere of radius 1."""
+    import trimesh
+
     ball = trimesh.creation.icosphere(subdivisions=SUBDIVISIONS)
     lack = _find_lack(ball.vertices, ball.faces)
     # those on the axes stay, so that it is as long, as wide and as tall as it should be

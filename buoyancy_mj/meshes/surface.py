@@ -2,8 +2,8 @@
 
 import manifold3d
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy import sparse
 
 from buoyancy_mj.errors import MeshError
 
@@ -86,8 +86,8 @@ def find_pieces(faces: NDArray[np.int64]) -> list[NDArray[np.intp]]:
     """Vertices of each connected piece of a surface, the piece of the first vertex first."""
     count = int(faces.max()) + 1
     ends = faces.ravel(), np.roll(faces, 1, axis=1).ravel()
-    graph = sparse.csr_array((np.ones(faces.size), ends), shape=(count, count))
-    pieces, labels = sparse.csgraph.connected_components(graph, directed=False)
+    graph = scipy.sparse.csr_array((np.ones(faces.size), ends), shape=(count, count))
+    pieces, labels = scipy.sparse.csgraph.connected_components(graph, directed=False)
     return [np.flatnonzero(labels == piece) for piece in range(pieces)]
 
 

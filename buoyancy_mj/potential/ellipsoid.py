@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import elliprd
 
 ROUND = 0.01
 """How far vertices may lie off an ellipsoid that a mesh still is, as a part of its radii."""
@@ -81,7 +81,7 @@ def ellipsoid_added_mass(radii: ArrayLike, density: float) -> NDArray[np.float64
     alpha = np.empty(3)
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
-        alpha[i] = 2.0 / 3.0 * a.prod() * elliprd(squares[j], squares[k], squares[i])
+        alpha[i] = 2.0 / 3.0 * a.prod() * scipy.special.elliprd(squares[j], squares[k], squares[i])
 
     # along the axes, then about them
     added = np.zeros(6)

@@ -17,8 +17,8 @@ import dataclasses
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import sparse
 
 from buoyancy_mj.kernels.galerkin import Layers, Panels, Rule, Rules, sum_layers
 from buoyancy_mj.meshes.surface import find_pieces
@@ -115,7 +115,7 @@ def _build_hypersingular(
     rows = np.repeat(np.arange(len(faces)), 3)
     operator = np.zeros((count, count))
     for axis in range(3):
-        curl = sparse.csr_matrix(
+        curl = scipy.sparse.csr_matrix(
             (curls[:, :, axis].ravel(), (rows, faces.ravel())), shape=(len(faces), count)
         )
         operator += curl.T @ (curl.T @ single).T

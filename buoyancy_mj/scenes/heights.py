@@ -4,8 +4,8 @@ import itertools
 
 import mujoco
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 _PLANE, _HEIGHT_FIELD, _MESH, _SDF = (
     int(getattr(mujoco.mjtGeom, f"mjGEOM_{name}")) for name in ("PLANE", "HFIELD", "MESH", "SDF")
@@ -88,7 +88,7 @@ def _find_hull_heights(
 
     It is where all half spaces n . x + d <= 0 of its facets meet, whose vertical lines have ends.
     """
-    equations = ConvexHull(vertices).equations
+    equations = scipy.spatial.ConvexHull(vertices).equations
     upward = equations[:, 2]
     beside = points[:, :2] @ equations[:, :2].T + equations[:, 3]
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -10,7 +10,6 @@ from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MeshError, ModelError
@@ -96,6 +95,8 @@ def _read_triangles(file: Path, _change: int) -> tuple[NDArray[np.float32], NDAr
     Raises:
         MeshError: trimesh cannot read the file, or it has no triangle.
     """
+    import trimesh
+
     try:
         scene = trimesh.load_scene(file)
         if file.suffix.lower() == ".dae":

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import mujoco
 import numpy as np
-from scipy.spatial.transform import Rotation
+import scipy
 
 from buoyancy_mj.errors import BuoyancyWarning, SceneError, choices
 from buoyancy_mj.hulls.bodies import group_floating_bodies
@@ -54,6 +54,7 @@ def place_vehicle(model: mujoco.MjModel, data: mujoco.MjData, part: Part) -> Non
 
     # the motion of the first body, which the others share
     poses = [data.qpos[model.jnt_qposadr[joint] :][:7].copy() for joint in free]
+    Rotation = scipy.spatial.transform.Rotation
     attitude = Rotation.from_euler("ZYX", [start.yaw, start.pitch, start.roll])
     turn = attitude * Rotation.from_quat(poses[0][3:], scalar_first=True).inv()
     spin = attitude.apply(start.angular_velocity)

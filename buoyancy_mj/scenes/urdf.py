@@ -7,7 +7,6 @@ from xml.etree import ElementTree
 
 import mujoco
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import BuoyancyWarning
@@ -66,6 +65,8 @@ def _find_bare_links(root: ElementTree.Element) -> tuple[list[str], bool]:
 
     A body is what fixed joints hold together.
     """
+    import trimesh
+
     links = root.findall("link[@name]")
     index = {link.get("name"): i for i, link in enumerate(links)}
     ends = [

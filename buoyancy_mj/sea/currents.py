@@ -5,8 +5,8 @@ import math
 from pathlib import Path
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import trapezoid
 
 from buoyancy_mj.errors import WaterError, describe
 from buoyancy_mj.values import ANY, read_array
@@ -111,7 +111,7 @@ class CurrentSeries:
         """Mean velocity (3,) [m/s] from the first to the last of the times."""
         if len(self.times) == 1:
             return np.array(self.velocities[0])
-        path: NDArray[np.float64] = trapezoid(self.velocities, self.times, axis=0)
+        path: NDArray[np.float64] = scipy.integrate.trapezoid(self.velocities, self.times, axis=0)
         return path / (self.times[-1] - self.times[0])
 
     @property

@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq, minimize_scalar
 
 from buoyancy_mj.errors import WaterError, choices, describe
 from buoyancy_mj.sea.currents import Current, current_rows, effective_current
@@ -82,7 +82,7 @@ def _wavenumber_in_still_water(omega: float, depth: float, gravity: float) -> fl
     # k h lies above both its deep value and its shallow one, sqrt(deep h), and below their sum
     shallow = math.sqrt(deep * depth)
     low, high = max(deep * depth, shallow), deep * depth + shallow
-    kh = brentq(
+    kh = scipy.optimize.brentq(
         lambda q: q * math.tanh(q) - deep * depth, low * 0.999, high, xtol=1e-300, rtol=1e-14
     )
     return float(kh) / depth
@@ -157,7 +157,7 @@ class Dispersion:
             if self._frequency(high, direction) < omega:
                 return math.nan
         return float(
-            brentq(
+            scipy.optimize.brentq(
                 lambda k: self._frequency(k, direction) - omega, low, high, xtol=1e-300, rtol=1e-14
             )
         )
@@ -170,7 +170,7 @@ class Dispersion:
         """Wavenumber with the greatest omega in a direction [rad/m]."""
         at = int(np.argmax(self._frequencies(direction)))
         low, high = self._k[max(at - 1, 0)], self._k[min(at + 1, len(self._k) - 1)]
-        found = minimize_scalar(
+        found = scipy.optimize.minimize_scalar(
             lambda k: -self._frequency(k, direction),
             bounds=(low, high),
             method="bounded",

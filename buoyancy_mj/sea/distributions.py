@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_trapezoid
 
 CUTOFF = 10.0
 """Highest frequency over that of the peak: above it lies about 1e-4 of the energy."""
@@ -40,10 +39,16 @@ def jonswap_moments(
         Ratios r up to `CUTOFF`; integrals of the shape up to each; and integrals of r^2 times the
         shape.
     """
+    from scipy.integrate import cumulative_trapezoid
+
     ratio = np.linspace(_LOWEST, CUTOFF, _SAMPLES)
     density = jonswap_shape(ratio, gamma)
     zeroth = cumulative_trapezoid(density, ratio, initial=0.0)
-    return ratio, zeroth, cumulative_trapezoid(density * ratio**2, ratio, initial=0.0)
+    return (
+        ratio,
+        zeroth,
+        cumulative_trapezoid(density * ratio**2, ratio, initial=0.0),
+    )
 
 
 def spreading_angles(exponent: float, shares: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -55,6 +60,8 @@ def spreading_angles(exponent: float, shares: NDArray[np.float64]) -> NDArray[np
         exponent: s.
         shares: parts of the whole, from 0 to 1 (n,).
     """
+    from scipy.integrate import cumulative_trapezoid
+
     angle = np.linspace(-math.pi, math.pi, _SAMPLES)
     density = np.cos(0.5 * angle) ** (2.0 * exponent)
     total = cumulative_trapezoid(density, angle, initial=0.0)

@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 
 class Attitude(NamedTuple):
@@ -34,6 +33,8 @@ class Attitude(NamedTuple):
 
     def as_matrix(self) -> NDArray[np.float64]:
         """The rotation world_from_vessel (3, 3) with this attitude."""
+        from scipy.spatial.transform import Rotation
+
         return np.asarray(Rotation.from_euler("ZYX", self).as_matrix(), float)
 
 

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError
 from buoyancy_mj.statics.floating_pose import FloatingPose, pose_vessel
@@ -82,6 +81,8 @@ def _find_floating_height(
 
 def tilt(pose: FloatingPose, angles: NDArray[np.float64]) -> FloatingPose:
     """Turn a vessel about the world's x and y by angles (2,) [rad], and heave it to its draft."""
+    from scipy.spatial.transform import Rotation
+
     rotation = Rotation.from_rotvec([*angles, 0.0]).as_matrix() @ pose.rotation
     return find_heave_balance(pose.vessel, rotation, float(pose.position[2]))
 

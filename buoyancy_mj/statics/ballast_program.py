@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import OptimizeResult, linprog
 
 from buoyancy_mj.errors import BallastError
 from buoyancy_mj.statics.ballast_sites import BallastSite
@@ -90,9 +90,9 @@ def _set_up_equations(
     )
 
 
-def _solve(cost: NDArray[np.float64], equations: _Equations) -> OptimizeResult:
+def _solve(cost: NDArray[np.float64], equations: _Equations) -> "scipy.optimize.OptimizeResult":
     """Find the masses of least cost, none of them negative."""
-    return linprog(
+    return scipy.optimize.linprog(
         cost, A_eq=equations.rows, b_eq=equations.targets, bounds=(0.0, None), method="highs"
     )
 

@@ -3,7 +3,6 @@
 import dataclasses
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 
 from buoyancy_mj.statics.floating_pose import pose_vessel
@@ -58,6 +57,8 @@ def compute_waterline(
     Returns:
         Segments of the waterline (n, 2, 2) [m], seen from above, from the centre of gravity.
     """
+    import trimesh
+
     low, _ = vessel.heights(rotation)
     cuts = [
         trimesh.intersections.mesh_plane(

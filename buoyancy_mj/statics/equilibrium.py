@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 import mujoco
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.hulls.selection import Selection
 from buoyancy_mj.sea.water import Water
@@ -189,6 +188,8 @@ def _describe(pose: FloatingPose, iterations: int, *, held: bool) -> Equilibrium
         iterations: steps of the search.
         held: whether no lower pose lies beside it.
     """
+    from scipy.spatial.transform import Rotation
+
     vessel = pose.vessel
 
     # turn it back to the heading of the vessel
@@ -234,6 +235,8 @@ def _measure_stiffness(pose: FloatingPose) -> NDArray[np.float64]:
 
     They are those of a swing of finite size, from side to side.
     """
+    from scipy.spatial.transform import Rotation
+
     vessel, size = pose.vessel, np.diag([_SWING * pose.vessel.radius, _SWING, _SWING])
 
     def press(swing: NDArray[np.float64]) -> NDArray[np.float64]:

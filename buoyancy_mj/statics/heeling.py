@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError
 from buoyancy_mj.statics.attitude import Attitude
@@ -30,6 +29,8 @@ class Heeling:
             axis: direction of the axis of heel, from the heading of `upright` to port [rad].
             trim_free: whether it trims until no torque is left about the axis across.
         """
+        from scipy.spatial.transform import Rotation
+
         self.vessel = vessel
         self.trim_free = trim_free
         direction = Attitude.from_matrix(upright).heading + axis
@@ -48,6 +49,8 @@ class Heeling:
         Raises:
             EquilibriumError: the vessel sinks, finds no balance, or balances end over end only.
         """
+        from scipy.spatial.transform import Rotation
+
         lean = 0.0 if last is None else self.measure_trim(last)
         height = None if last is None else float(last.position[2])
         turn = Rotation.from_euler("YX", [lean, angle]).as_matrix()
@@ -86,7 +89,7 @@ class Heeling:
 
         if at(low) * at(high) >= 0.0:
             return float(high)
-        return float(brentq(at, low, high, xtol=1e-10))
+        return float(scipy.optimize.brentq(at, low, high, xtol=1e-10))
 
     def measure_arm(self, pose: FloatingPose) -> float:
         """Righting arm [m] of a pose."""

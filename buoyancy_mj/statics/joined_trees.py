@@ -6,7 +6,6 @@ from typing import NamedTuple
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.bodies import Bond, list_bonds
@@ -154,6 +153,8 @@ def _close_gaps(
 
 def _compare(before: JoinedTree, after: JoinedTree) -> Move:
     """How far a tree moved against the vessel's root."""
+    from scipy.spatial.transform import Rotation
+
     distance = float(np.linalg.norm(after.position - before.position))
     turn = Rotation.from_matrix(after.rotation @ before.rotation.T)
     return Move(after.root, distance, float(turn.magnitude()))

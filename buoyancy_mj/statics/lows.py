@@ -4,12 +4,10 @@ import warnings
 from collections.abc import Sequence
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from buoyancy_mj.errors import BuoyancyWarning
+from buoyancy_mj.meshes.components import label_components
 from buoyancy_mj.statics.balance import find_heave_balance
 from buoyancy_mj.statics.distinct_poses import FREE
 from buoyancy_mj.statics.floating_pose import FloatingPose
@@ -52,8 +50,7 @@ def find_lows(vessel: Vessel) -> list[FloatingPose]:
     lengths = np.linalg.norm(ups[edges[:, 0]] - ups[edges[:, 1]], axis=1)
     rises = np.abs(energies[edges[:, 0]] - energies[edges[:, 1]])
     one, other = edges[rises <= 0.5 * FREE * lengths**2].T
-    level = coo_array((np.ones(len(one)), (one, other)), shape=(len(poses), len(poses)))
-    _, plains = connected_components(level, directed=False)
+    plains = label_components(np.column_stack([one, other]), len(poses))
     lows = lows[np.argsort(energies[lows], kind="stable")]
     _, first = np.unique(plains[lows], return_index=True)
     lows = lows[np.sort(first)]
@@ -69,6 +66,8 @@ def find_lows(vessel: Vessel) -> list[FloatingPose]:
 
 def _survey_attitudes(vessel: Vessel) -> tuple[list[FloatingPose], NDArray[np.int64]]:
     """A vessel at its draft in attitudes all round (n), and which of them are neighbours (m, 2)."""
+    import trimesh
+
     ball = trimesh.creation.icosahedron()
     ups, faces = np.asarray(ball.vertices), np.asarray(ball.faces)
     heights = np.full(len(ups), vessel.position[2])

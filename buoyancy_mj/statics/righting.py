@@ -8,8 +8,8 @@ from typing import Literal
 
 import mujoco
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import trapezoid
 
 from buoyancy_mj.errors import BuoyancyWarning, EquilibriumError, ModelError, choices, describe
 from buoyancy_mj.hulls.selection import Selection
@@ -75,7 +75,7 @@ class RightingArm:
             )
         inside = self.heel[(self.heel > low) & (self.heel < end)]
         heels = np.array([low, *inside, end])
-        return float(trapezoid(np.interp(heels, self.heel, self.gz), heels))
+        return float(scipy.integrate.trapezoid(np.interp(heels, self.heel, self.gz), heels))
 
 
 def righting_arm(

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import EquilibriumError, ModelError, choices
 from buoyancy_mj.hulls.names import body_name
@@ -265,6 +264,8 @@ class Vessel:
         self, position: NDArray[np.float64], rotation: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """Coordinates of the model (nq,) with the free joints of all trees moved to a pose."""
+        from scipy.spatial.transform import Rotation
+
         qpos = self.qpos.copy()
         origin = position - rotation @ self.centre_of_gravity
         for tree in self.trees:

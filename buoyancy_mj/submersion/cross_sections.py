@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_simpson, cumulative_trapezoid
 
 from buoyancy_mj.kernels import slices
 
@@ -67,6 +66,8 @@ def integrate(rows: NDArray[np.float64], s: NDArray[np.float64], rule: str) -> N
     Returns:
         Integrals (n, k), the first of them zero; a single row of zeros for fewer than two heights.
     """
+    from scipy.integrate import cumulative_simpson, cumulative_trapezoid
+
     if len(s) < 2:
         return np.zeros((1, rows.shape[1]))
     integrals: NDArray[np.float64] = cumulative_trapezoid(rows, s, axis=0, initial=0.0)

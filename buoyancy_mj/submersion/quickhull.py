@@ -1,8 +1,8 @@
 """Volume and centroid of the convex hull of points, by Quickhull."""
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import spatial
 
 FLAT = 1e-12
 """Smallest over largest extent of a set of points that counts as flat."""
@@ -42,19 +42,19 @@ def hull_moments(
     return volume, middle + tetrahedra @ (a + b + c) / (4.0 * volume)
 
 
-def _convex_hull(points: NDArray[np.float64]) -> spatial.ConvexHull | None:
+def _convex_hull(points: NDArray[np.float64]) -> "scipy.spatial.ConvexHull | None":
     """The convex hull of points; None if they enclose nothing."""
     if len(points) < 4 or not np.isfinite(points).all():
         return None
     try:
-        return spatial.ConvexHull(points)
-    except spatial.QhullError:
+        return scipy.spatial.ConvexHull(points)
+    except scipy.spatial.QhullError:
         extents = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
         if extents[2] <= FLAT * extents[0]:
             return None
 
     # Qhull cannot tell the facets apart: let it shake the points a little
     try:
-        return spatial.ConvexHull(points, qhull_options="QJ")
-    except spatial.QhullError:
+        return scipy.spatial.ConvexHull(points, qhull_options="QJ")
+    except scipy.spatial.QhullError:
         return None

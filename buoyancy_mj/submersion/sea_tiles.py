@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import blocks, tiles
 from buoyancy_mj.kernels.blocks import Blocks
 from buoyancy_mj.kernels.polynomials import LARGEST
-from buoyancy_mj.kernels.tiles import Tiles
 from buoyancy_mj.kernels.still_water import decay, seabed
+from buoyancy_mj.kernels.tiles import Tiles
 from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, PHASE
 
 ACCURACY = 1e-5
@@ -56,7 +56,12 @@ def lay_tiles(waves: NDArray[np.float64], radii: Sequence[float]) -> Tiles:
         shares[: len(_exponents(degree)), :held] = _fit(rows[:, :held], degree, reach)
     layout = np.zeros(12)
     layout[[tiles.PER_SIDE, tiles.PER_REACH]] = 1.0 / (OVERLAP * reach), 1.0 / reach
-    layout[[tiles.SIDE, tiles.REACH, tiles.HELD, tiles.DEGREE]] = OVERLAP * reach, reach, held, degree
+    layout[[tiles.SIDE, tiles.REACH, tiles.HELD, tiles.DEGREE]] = (
+        OVERLAP * reach,
+        reach,
+        held,
+        degree,
+    )
     layout[tiles.HEIGHT : tiles.TWIST + 1] = [(amplitudes * k**n).sum() for n in range(4)]
     if amplitudes.any():
         layout[tiles.TURNING] = mean_wave_number(amplitudes, k)
@@ -80,9 +85,7 @@ def _order(waves: NDArray[np.float64]) -> NDArray[np.intp]:
     return np.argsort(np.hypot(waves[:, KX], waves[:, KY]), kind="stable")
 
 
-def _plan(
-    rows: NDArray[np.float64], allowed: float, radius: float
-) -> tuple[int, int, float]:
+def _plan(rows: NDArray[np.float64], allowed: float, radius: float) -> tuple[int, int, float]:
     """How many waves tiles hold, the degree of their polynomials, and half their width [m].
 
     What costs least over a hull of a radius [m].
@@ -105,7 +108,9 @@ def _plan(
     held = np.arange(1, many + 1)
     sizes = (powers * (powers + 1) // 2).astype(float)
     count = (1.0 + 2.0 * radius / (OVERLAP * halves)) ** 2
-    cost = count * (200.0 + held * (2.0 + 0.1 * sizes)) + _ASKED * (0.6 * sizes + 15.0 * (many - held))
+    cost = count * (200.0 + held * (2.0 + 0.1 * sizes)) + _ASKED * (
+        0.6 * sizes + 15.0 * (many - held)
+    )
     degree, last = np.unravel_index(np.argmin(cost), cost.shape)
     return int(held[last]), int(degrees[degree]), float(halves[degree, last])
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import mujoco
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import linprog, lsq_linear
 
 from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import ModelError
@@ -117,7 +117,7 @@ class Allocation:
         if (thrusts >= self.least).all() and (thrusts <= self.most).all():
             return thrusts
         small = _STEADY * np.eye(len(self.drives))
-        found = lsq_linear(
+        found = scipy.optimize.lsq_linear(
             np.vstack([matrix, small]),
             np.append(wanted, np.zeros(len(self.drives))),
             (self.least, self.most),
@@ -159,7 +159,7 @@ class Allocation:
         """The most that can be had along an axis alone, in the direction of a sign."""
         # unknowns are the thrusts, and how much comes of them
         count = len(self.drives)
-        found = linprog(
+        found = scipy.optimize.linprog(
             np.append(np.zeros(count), -1.0),
             A_eq=np.column_stack([self.matrix, -sign * np.eye(6)[axis]]),
             b_eq=np.zeros(6),

@@ -4,7 +4,6 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 import rerun as rr
-import trimesh
 
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
@@ -111,6 +110,8 @@ def styles(causes: Sequence[str], hulls: Sequence[str]) -> dict[Line, rr.SeriesL
 
 def hue(i: int) -> Colour:
     """The i-th of many colours, far from its neighbours: steps of the golden ratio in hue."""
+    import trimesh
+
     hsv = np.array([[0.61803 * i % 1.0, 0.5, 0.9]])
     red, green, blue, _ = trimesh.visual.color.hsv_to_rgba(hsv)[0].tolist()
     return red, green, blue

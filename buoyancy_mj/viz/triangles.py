@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-import trimesh
 from numpy.typing import ArrayLike, NDArray
 
 _SHARP = 0.6
@@ -23,6 +22,8 @@ class SmoothMesh(NamedTuple):
 
 def smooth_mesh(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> SmoothMesh:
     """Give a mesh normals that are smooth but at sharp edges."""
+    import trimesh
+
     mesh = trimesh.graph.smooth_shade(trimesh.Trimesh(vertices, faces, process=False), angle=_SHARP)
     return SmoothMesh(
         np.asarray(mesh.vertices), np.asarray(mesh.faces), np.asarray(mesh.vertex_normals)

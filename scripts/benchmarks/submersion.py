@@ -1,14 +1,14 @@
 """One submersion by the public call, against other packages on the same meshes and poses."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import trimesh
 from rich.table import Table
 
-from benchmarks.peers import PEERS, Poses, capytaine
-from benchmarks.timing import ATTITUDES, median_time
+from benchmarks.peers import CALLS, PEERS, Poses, capytaine
+from benchmarks.rows import Row, describe_time
+from benchmarks.timing import ATTITUDES, time_calls
 from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, read_scene, submerge
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.submersion import exact
@@ -16,6 +16,8 @@ from buoyancy_mj.submersion.hull_set import HullSet
 
 LARGE = 5_000
 """Triangles from which exponents are fitted."""
+SHOWN = 81_920
+"""Triangles of the sphere that the pages show."""
 _MOST = 330_000
 """Triangles of the largest mesh, at most."""
 
@@ -66,19 +68,17 @@ def _measure_solid(solid: trimesh.Trimesh, quick: bool) -> Times:
     ]
     poses = Poses(solid, positions, ATTITUDES)
 
-    times = {
-        "triangles": float(len(solid.faces)),
-        "still": median_time(lambda i: submerge(mesh, positions[i], ATTITUDES[i]), quick),
-        "waves": median_time(
-            lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3), quick
-        ),
-        "trimesh": median_time(poses.by_trimesh, quick),
-        "scipy hull": median_time(poses.by_scipy, quick),
-        "manifold3d": median_time(poses.by_manifold, quick),
+    calls = {
+        "still": lambda i: submerge(mesh, positions[i], ATTITUDES[i]),
+        "waves": lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3),
+        "trimesh": poses.by_trimesh,
+        "scipy hull": poses.by_scipy,
+        "manifold3d": poses.by_manifold,
     }
     if capytaine is not None and len(solid.faces) < 100_000:
-        fewest = 1 if len(solid.faces) > 10_000 else 3
-        times["Capytaine"] = median_time(poses.by_capytaine, quick, fewest)
+        calls["Capytaine"] = poses.by_capytaine
+    slow = {"Capytaine": 1 if len(solid.faces) > 10_000 else 3}
+    times = {"triangles": float(len(solid.faces))} | time_calls(calls, quick, slow)
     times["bytes per triangle"] = _bytes(mesh) / len(solid.faces)
     return times
 
@@ -90,8 +90,8 @@ def _bytes(mesh: TriMesh) -> int:
     return sum(values.nbytes for values in arrays)
 
 
-def _exponent(rows: list[Times], column: str) -> float:
-    """Exponent of the power law through times against triangles, from `LARGE` ones up."""
+def exponent(rows: list[Times], column: str) -> float:
+    """The exponent of the power law through times against triangles, from `LARGE` ones up."""
     large = [row for row in rows if column in row and row["triangles"] >= LARGE]
     if len(large) < 2:
         return float("nan")
@@ -101,7 +101,7 @@ def _exponent(rows: list[Times], column: str) -> float:
 
 def describe(results: Results) -> Iterator[Table | str]:
     """Describe all meshes in a table, and the exponents of each shape."""
-    table = Table(title="one submersion, median; factors are against still water")
+    table = Table(title="one submersion, processor time; factors are against still water")
     for column in ("mesh", "triangles", "still water", "waves", *PEERS, "bytes per triangle"):
         table.add_column(column, justify="right")
     for shape, rows in results.items():
@@ -115,33 +115,36 @@ def describe(results: Results) -> Iterator[Table | str]:
     yield table
 
     for shape, rows in results.items():
-        still, waves = (_exponent(list(rows.values()), surface) for surface in ("still", "waves"))
+        still, waves = (exponent(list(rows.values()), surface) for surface in ("still", "waves"))
         yield (
             f"{shape}: time grows as triangles^{still:.2f} on still water, ^{waves:.2f} in waves, "
             f"from {LARGE:,} up"
         )
 
 
-def plot(path: Path, results: Results) -> None:
-    """Draw time against triangles of the sphere, with the fitted exponents."""
-    from matplotlib.figure import Figure
-
-    rows = list(results["sphere"].values())
-    figure = Figure(figsize=(7, 4.5), layout="constrained")
-    axes = figure.add_subplot()
-    names = {"still": "still water", "waves": "in waves"} | {peer: peer for peer in PEERS}
-    for column, name in names.items():
-        points = [(row["triangles"], row[column] * 1e6) for row in rows if column in row]
-        if points:
-            exponent = _exponent(rows, column)
-            label = f"{name}, n^{exponent:.2f}" if np.isfinite(exponent) else name
-            width = 1.2 if column in PEERS else 2.5
-            axes.loglog(*zip(*points, strict=True), marker="o", lw=width, label=label)
-    axes.set(
-        xlabel="triangles",
-        ylabel="time of one submersion [us]",
-        title="a sphere in random attitudes",
-    )
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
+def rows(results: Results) -> Iterator[Row]:
+    """What the largest sphere that all know takes, against the others."""
+    spheres = list(results.get("sphere", {}).values())
+    for row in spheres:
+        if row["triangles"] == SHOWN:
+            what = f"submersion of a sphere of {SHOWN:,} triangles"
+            still = describe_time(row["still"])
+            for peer in PEERS:
+                if peer in row:
+                    factor = row[peer] / row["still"]
+                    first = peer == "trimesh"
+                    yield Row(what, still, factor, f"as fast as {CALLS[peer]}", first)
+            factor = row["waves"] / row["still"]
+            yield Row(
+                f"{what}, in a wave",
+                describe_time(row["waves"]),
+                factor,
+                "as long as on still water",
+            )
+    for surface, name in (("still", "on still water"), ("waves", "in a wave")):
+        exponents = [exponent(list(sizes.values()), surface) for sizes in results.values()]
+        if np.isfinite(exponents).all():
+            span = " to ".join(dict.fromkeys(f"n^{f(exponents):.2f}" for f in (min, max)))
+            yield Row(f"growth of time with triangles, {name}", span)
+    sizes = [row["bytes per triangle"] for sizes in results.values() for row in sizes.values()]
+    yield Row("memory of a mesh and its tree", f"{min(sizes):.0f} to {max(sizes):.0f} B a triangle")

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import mujoco
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.geoms import read_geom_mesh
@@ -105,7 +105,7 @@ def _read_corners(
 def _keep_outermost(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Those of some points (n, 3) [m] that are corners of their convex hull."""
     try:
-        return np.asarray(points[ConvexHull(points).vertices])
-    except QhullError:
+        return np.asarray(points[scipy.spatial.ConvexHull(points).vertices])
+    except scipy.spatial.QhullError:
         # so thin that it has none
         return points

@@ -7,8 +7,9 @@ has one.
 from typing import NamedTuple
 
 import numpy as np
-from numba import int32, int64, njit, void
+from numba import int32, int64, void
 
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.entries.pointers import call, set_word, word
 from buoyancy_mj.kernels.entries.views import view
 from buoyancy_mj.kernels.vehicle.devices import ALIVE, CHANGES, MODEL, Device
@@ -30,20 +31,20 @@ class DeviceContext(NamedTuple):
     """MuJoCo's mju_error."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def _slot(data, instance, context):
     """Address of the word that the engine keeps for an instance: the address of a device, or 0."""
     return word(data + view(context, DeviceContext).plugin_data) + 8 * instance
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _tell(text, context):
     """Tell the engine what failed; 0 for nothing."""
     if text != 0:
         call(view(context, DeviceContext).error, (text,))
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _find_device(model, data, instance, context):
     """The address of the device of an instance, of this model and of the waters of now.
 
@@ -97,7 +98,9 @@ def copy(target: int64, model: int64, source: int64, instance: int32, context: i
     into, readings = view(one, Device).readings, view(other, Device).readings
     for i in range(min(into.shape[0], readings.shape[0])):
         into[i] = readings[i]
-    view(one, Device).added[:] = view(other, Device).added
+    added, others = view(one, Device).added, view(other, Device).added
+    for i in range(others.shape[0]):
+        added[i] = others[i]
 
 
 def actuator_act_dot(model: int64, data: int64, instance: int32, context: int64) -> void:

@@ -6,16 +6,17 @@ They take the addresses of mjModel, mjData, a `passes.Record`, a `WaterTable` an
 import functools
 from collections.abc import Callable
 
-from numba import int64, njit, void
+from numba import int64, void
 
 from buoyancy_mj.kernels import clip, delivery
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.entries.tables import WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
 from buoyancy_mj.kernels.multibody import Engine, downward_gravity
 from buoyancy_mj.kernels.passes import PassArrays, Record
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def _read(model, data, record, water, place):
     """What a load takes."""
     table = view(water, WaterTable)

@@ -5,9 +5,10 @@ What is known of the water, where it works and what a callback is told stand in 
 
 import math
 
-from numba import int64, njit, void
+from numba import int64, void
 
 from buoyancy_mj.kernels import delivery, passes
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.entries.pointers import call, exchange, set_word, word
 from buoyancy_mj.kernels.entries.tables import Lease, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
@@ -15,7 +16,7 @@ from buoyancy_mj.kernels.multibody import Engine, Identity, downward_gravity, su
 from buoyancy_mj.kernels.passes import AUGMENTED, DATA, MODEL, Record
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _evaluate(model, data, water, place, record):
     """Run one pass: fill a record, and add its loads to the engine's forces and mass matrix.
 
@@ -49,7 +50,7 @@ def _evaluate(model, data, water, place, record):
     return 0
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _take_workplace(water):
     """Address of a workplace that no other thread works at, from the pool of the water."""
     pool = view(water, WaterTable).pool
@@ -59,7 +60,7 @@ def _take_workplace(water):
     return pool[i]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _take_record(water, data):
     """Index of the record of some data, or of the oldest that no other thread fills."""
     table = view(water, WaterTable)
@@ -99,7 +100,7 @@ def act(model: int64, data: int64, water: int64, record: int64) -> int64:
 # what the engine calls: small, so that it is ready without compiling what is above
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def act_or_fail(model, data, water, record):
     """Act, and tell the engine what fails."""
     links = view(water, WaterTable).links

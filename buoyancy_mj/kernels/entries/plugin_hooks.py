@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import int32, int64, njit, void
+from numba import int32, int64, void
 
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.entries.passive import act_or_fail
 from buoyancy_mj.kernels.entries.pointers import call, set_word, word
 from buoyancy_mj.kernels.entries.tables import WaterTable
@@ -26,13 +27,13 @@ class Context(NamedTuple):
     """MuJoCo's mju_error."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def _slot(data, instance, context):
     """Address of the word that the engine keeps for an instance: the address of a record, or 0."""
     return word(data + view(context, Context).plugin_data) + 8 * instance
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _resolve(model, data, instance, context):
     """Let Python find the water of a model and put a record of it into the data.
 
@@ -100,14 +101,14 @@ def compute(model: int64, data: int64, instance: int32, capability: int32, conte
     act_or_fail(model, data, view(record, Record).ids[WATER], record)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def _is_of_another(model, data, record):
     """Whether a record is of another model, or of other sizes of its geoms."""
     ids = view(record, Record).ids
     return ids[MODEL] != model or ids[SIZES] != _sum_sizes(model, data, record)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _sum_sizes(model, data, record):
     """The sum by which other sizes of a model's geoms are noticed."""
     offsets = view(view(record, Record).ids[WATER], WaterTable).offsets

@@ -1,19 +1,10 @@
 """Words at an address, C functions at an address, and a flag that threads share."""
 
-import numpy as np
 from llvmlite import ir
-from numba import carray, njit, types
+from numba import types
 from numba.extending import intrinsic
 
-
-@intrinsic
-def pointer(typing, address):
-    """An address as a pointer."""
-
-    def code(context, builder, signature, args):
-        return builder.inttoptr(args[0], context.get_value_type(signature.return_type))
-
-    return types.voidptr(types.int64), code
+_WORD = ir.IntType(64)
 
 
 @intrinsic
@@ -25,8 +16,7 @@ def call(typing, function, words):
     count = len(words)
 
     def code(context, builder, signature, args):
-        word = ir.IntType(64)
-        kind = ir.FunctionType(word, [word] * count)
+        kind = ir.FunctionType(_WORD, [_WORD] * count)
         values = [builder.extract_value(args[1], n) for n in range(count)]
         return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
 
@@ -39,8 +29,7 @@ def call_number(typing, function, words):
     count = len(words)
 
     def code(context, builder, signature, args):
-        word = ir.IntType(64)
-        kind = ir.FunctionType(ir.DoubleType(), [word] * count)
+        kind = ir.FunctionType(ir.DoubleType(), [_WORD] * count)
         values = [builder.extract_value(args[1], n) for n in range(count)]
         return builder.call(builder.inttoptr(args[0], kind.as_pointer()), values)
 
@@ -52,19 +41,28 @@ def exchange(typing, address, value):
     """Set the word at an address at one go with all threads; what it was."""
 
     def code(context, builder, signature, args):
-        place = builder.inttoptr(args[0], ir.IntType(64).as_pointer())
+        place = builder.inttoptr(args[0], _WORD.as_pointer())
         return builder.atomic_rmw("xchg", place, args[1], "seq_cst")
 
     return types.int64(types.int64, types.int64), code
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def word(address):
+@intrinsic
+def word(typing, address):
     """The 64-bit word at an address."""
-    return carray(pointer(address), (1,), np.int64)[0]
+
+    def code(context, builder, signature, args):
+        return builder.load(builder.inttoptr(args[0], _WORD.as_pointer()))
+
+    return types.int64(types.int64), code
 
 
-@njit(cache=True, error_model="numpy", inline="always")
-def set_word(address, value):
+@intrinsic
+def set_word(typing, address, value):
     """Set the 64-bit word at an address."""
-    carray(pointer(address), (1,), np.int64)[0] = value
+
+    def code(context, builder, signature, args):
+        builder.store(args[1], builder.inttoptr(args[0], _WORD.as_pointer()))
+        return context.get_dummy_value()
+
+    return types.void(types.int64, types.int64), code

@@ -2,8 +2,9 @@
 
 import math
 
-from numba import int64, njit
+from numba import int64
 
+from buoyancy_mj.kernels.compiling import inner
 from buoyancy_mj.kernels.entries.pointers import call_number
 from buoyancy_mj.kernels.vectors import rotate, triple
 from buoyancy_mj.kernels.vehicle.sensors.water import find_site
@@ -14,7 +15,7 @@ PAST = 1e-6
 """How far behind a part of its own vehicle a ray begins anew [m]."""
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def cast_rays(model, data, mount, echoes, equipment):
     """Find how far it is along each beam to the first geom of others, and whose it is."""
     at, axes = find_site(mount, equipment), equipment.sites.site_xmat[mount.site]
@@ -25,7 +26,7 @@ def cast_rays(model, data, mount, echoes, equipment):
         echoes.ranges[b], echoes.met[b] = _cast(model, data, echoes, at, way)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _cast(model, data, echoes, at, way):
     """How far it is along one beam to the first geom of others [m], and its body; NaN for none."""
     point, far = echoes.point, 0.0

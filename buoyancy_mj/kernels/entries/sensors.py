@@ -7,8 +7,8 @@ import functools
 from collections.abc import Callable
 
 from numba import int64
-from numba.extending import register_jitable
 
+from buoyancy_mj.kernels.compiling import register_jitable
 from buoyancy_mj.kernels.entries.rays import cast_rays
 from buoyancy_mj.kernels.entries.views import view, view_engine
 from buoyancy_mj.kernels.sea import Sea
@@ -23,13 +23,13 @@ from buoyancy_mj.kernels.vehicle.sensors.sampling import (
 )
 
 
-@register_jitable
+@register_jitable()
 def _sound(model, data, known, equipment):
     """Cast the beams of a sensor."""
     cast_rays(model, data, known.mount, known.echoes, equipment)
 
 
-@register_jitable
+@register_jitable()
 def _keep_still(model, data, known, equipment):
     """Do nothing: the sensor has no beams."""
 

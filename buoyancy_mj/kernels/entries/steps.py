@@ -3,9 +3,10 @@
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import carray, njit
+from numba import carray
 
 from buoyancy_mj.kernels.arrays import Doubles, Int32s, Words
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.drafts import find_draft
 from buoyancy_mj.kernels.entries.pointers import pointer, word
 from buoyancy_mj.kernels.entries.views import view

@@ -10,7 +10,6 @@ from typing import Any, Generic
 import numpy as np
 from llvmlite import ir
 from numba.extending import intrinsic
-from numba.np.arrayobj import make_array, populate_array
 
 from buoyancy_mj.kernels.arrays import Field, T, conform, fields, leaves, numba_type
 from buoyancy_mj.kernels.paths import PATHS
@@ -135,6 +134,9 @@ def _load(context, builder, place, field):
 
 def _array(context, builder, field, address, shape):
     """The contiguous array of a shape at an address; nobody counts references to it."""
+    # whoever compiles has it at hand
+    from numba.np.arrayobj import make_array, populate_array
+
     kind, size = numba_type(field), field.dtype.itemsize
     strides = [_WORD(size)]
     for extent in reversed(shape[1:]):

@@ -2,7 +2,7 @@
 
 import math
 
-from numba import njit
+from buoyancy_mj.kernels.compiling import njit
 
 LEAST_TILT = 0.1
 """Sine of the least angle between a disc and the surface: a disc that lies flat comes out over the
@@ -11,7 +11,7 @@ DEEP = 1.3
 """Depth of the shaft over the disc's radius from which on no air comes down to it."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def wet_share(
     depth,  # of the middle of the disc under the surface [m]
     tilt,  # sine of the angle between the disc and the surface
@@ -26,7 +26,7 @@ def wet_share(
     return 1.0 - (math.acos(x) - x * math.sqrt(1.0 - x * x)) / math.pi
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def ventilated_share(
     depth,  # of the middle of the disc under the surface [m]
     radius,  # [m]

@@ -1,13 +1,12 @@
 """How a point of a body moves, and the water around it."""
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.currents import set_current
 from buoyancy_mj.kernels.vectors import difference
 from buoyancy_mj.kernels.waves import add_velocity, elevation
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def find_velocity(
     bodies,  # `multibody.Bodies`
     b,  # index of the body
@@ -23,7 +22,7 @@ def find_velocity(
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def find_depth(
     sea,  # `sea.Sea`
     at,  # (3) [m]
@@ -33,7 +32,7 @@ def find_depth(
     return sea.level + elevation(sea.waves, at[0], at[1], time) - at[2]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def set_water_velocity(
     sea,  # `sea.Sea`
     at,  # (3) [m]

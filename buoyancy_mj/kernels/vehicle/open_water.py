@@ -1,14 +1,13 @@
 """How thrust and torque of a propeller change with the flow into it, in all four quadrants."""
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vehicle.tables import interpolate
 
 ADVANCE, THRUST, TORQUE = range(3)
 """Columns of a curve: J = V / (n D), and K_T and K_Q over those at J = 0."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def _share(curve, column, j):
     """A column of a curve at J: that at J = 0 below, and straight on beyond the end."""
     last = curve.shape[0] - 1
@@ -20,7 +19,7 @@ def _share(curve, column, j):
     return curve[last, column] + slope * (j - curve[last, ADVANCE])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def meet_flow(
     curve,  # (k, 3), from J = 0 on
     speed,  # of the rotor, n [rev/s]
@@ -43,7 +42,7 @@ def meet_flow(
     return _share(curve, THRUST, j), _share(curve, TORQUE, j), braking
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def drag_blades(drag, density, diameter, braking):
     """Force [N] along the thrust on blades that a flow drags.
 

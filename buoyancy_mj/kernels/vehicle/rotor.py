@@ -2,8 +2,7 @@
 
 import math
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vehicle.tables import interpolate
 
 SQUARE, THRUST, TORQUE, CURRENT = range(4)
@@ -16,19 +15,19 @@ RK4 = 1
 """MuJoCo's mjINT_RK4."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def signed_square(n):
     """The square of a number with its sign."""
     return n * abs(n)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def signed_root(square):
     """The number whose signed square this is."""
     return math.copysign(math.sqrt(abs(square)), square)
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def demand_speed(
     command,  # from the one at which the rotor stands
     deadband,  # to the first command that is heard
@@ -43,7 +42,7 @@ def demand_speed(
     return interpolate(demands, COMMAND, SPEED, command)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def hold_rate(
     rate,  # of a number at the beginning of a step
     decay,  # by which the rate falls as the number grows [1/s]
@@ -62,7 +61,7 @@ def hold_rate(
     return rate if x < 1e-9 else -rate * math.expm1(-x) / x
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def spin(
     speed,  # [rad/s]
     target,  # [rad/s]

@@ -3,8 +3,7 @@
 import math
 from typing import NamedTuple
 
-from numba import njit
-
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.multibody import last_dof
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.vehicle.immersion import ventilated_share, wet_share
@@ -55,14 +54,14 @@ class Moment(NamedTuple):
     """The same where it would stay."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def is_disabled(p, around):
     """Whether the group of the actuator is switched off."""
     group = around.actuator_group[p.actuator]
     return 0 <= group < 31 and (around.disableactuator >> group) & 1 != 0
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner
 def hear(p, around):
     """The command, from the one at which the rotor stands; 0 for none."""
     command = around.ctrl[p.address]
@@ -82,7 +81,7 @@ def hear(p, around):
     return min(max(command, p.demands[0, COMMAND]), p.demands[last, COMMAND])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner
 def find_speed(p, around):
     """The speed of the rotor now [rev/s]."""
     if p.state < 0:
@@ -93,7 +92,7 @@ def find_speed(p, around):
     return demand_speed(followed, p.deadband, p.demands, p.curve)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner
 def find_inflow(p, around, sea, at, axis):
     """Velocity of the disc through the water along its thrust [m/s]."""
     body = around.site_bodyid[p.site]
@@ -104,7 +103,7 @@ def find_inflow(p, around, sea, at, axis):
     return (1.0 - p.wake) * along
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner
 def look(p, around, sea):
     """The `Moment` of a thruster."""
     at = triple(around.site_xpos, p.site, 0)
@@ -147,7 +146,7 @@ def look(p, around, sea):
     return Moment(speed, thrust, torque, inflow, wet, lost, airy)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def advance(p, around, sea):
     """Write how fast the rotor follows, and how fast the share that air takes grows [1/s]."""
     if is_disabled(p, around):
@@ -178,7 +177,7 @@ def advance(p, around, sea):
         around.act_dot[p.air] = hold_rate(gap * pace, pace, around.timestep, around.integrator)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def push(p, around, sea):
     """Write the thrust to `actuator_force`, and to `qfrc_passive` the rest of the torque."""
     readings = p.device.readings
@@ -201,7 +200,7 @@ def push(p, around, sea):
     readings[READ_CURRENT] = current * max(now.torque / bollard, 0.0) if bollard != 0.0 else 0.0
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def turn_hull(p, around, now):
     """Add the torque of the motor's reaction, and of the gyroscope that the rotor is.
 
@@ -221,7 +220,7 @@ def turn_hull(p, around, now):
     turn_by(p, around, tx, ty, tz)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inner
 def turn_by(p, around, tx, ty, tz):
     """Add a torque [N m] to `qfrc_passive`, in place of what it has added before.
 

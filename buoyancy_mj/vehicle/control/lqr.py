@@ -7,7 +7,6 @@ from typing import ClassVar
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.errors import ControlError, choices, describe
 from buoyancy_mj.values import read_array, set_number
@@ -159,6 +158,8 @@ class LqrController:
         A vehicle that has turned, where its heading is free, is seen as if it had not: still water
         is the same in all directions.
         """
+        from scipy.spatial.transform import Rotation
+
         qpos, qvel = data.qpos.copy(), data.qvel.copy()
         joint = self._joint
         if "heading" in self._free:
@@ -198,6 +199,8 @@ class LqrController:
 
 def _place(lqr: Lqr, outset: Outset, joint: FreeJoint) -> None:
     """Put the data where the rest is to be: level."""
+    from scipy.spatial.transform import Rotation
+
     data = outset.data
     motion = joint.read(data)
     place = slice(joint.qpos, joint.qpos + 3)

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.linalg import solve_discrete_are
 
 from buoyancy_mj.errors import ControlError
 
@@ -90,7 +90,7 @@ def solve_regulator(a: Matrix, b: Matrix, weights: Matrix, input_weights: Matrix
     """
     r = np.diag(input_weights)
     try:
-        cost = solve_discrete_are(a, b, np.diag(weights), r)
+        cost = scipy.linalg.solve_discrete_are(a, b, np.diag(weights), r)
     except (np.linalg.LinAlgError, ValueError) as error:
         raise ControlError(_WITHOUT_END) from error
     gain = np.linalg.solve(r + b.T @ cost @ b, b.T @ cost @ a)

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from buoyancy_mj.errors import ModelError, describe
 from buoyancy_mj.kernels.vehicle.rotor import SQUARE, THRUST, TORQUE
@@ -130,7 +130,7 @@ def tabulate(coefficients: Callable[[Doubles], Doubles]) -> Doubles:
     Args:
         coefficients: K_T and K_Q (n, 2) at J (n,).
     """
-    end = brentq(lambda j: float(coefficients(np.array([j]))[0, 0]), 0.0, 3.0)
+    end = scipy.optimize.brentq(lambda j: float(coefficients(np.array([j]))[0, 0]), 0.0, 3.0)
     j = np.linspace(0.0, end, _ROWS)
     j = np.append(j, end + (j[1] - j[0]))
     return np.column_stack([j, coefficients(j)])

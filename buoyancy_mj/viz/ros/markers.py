@@ -4,7 +4,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.sea.water import Water
@@ -27,6 +26,8 @@ _UPRIGHT = (1.0, 0.0, 0.0, 0.0)
 
 def draw_geoms(run: Run) -> Any:
     """All geoms that MuJoCo's viewer would show, each in the frame of its body."""
+    from scipy.spatial.transform import Rotation
+
     markers = []
     for geom in find_visible_geoms(run.model):
         corners = geom.vertices[geom.faces].reshape(-1, 3)

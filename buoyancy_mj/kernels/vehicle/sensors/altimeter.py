@@ -3,8 +3,7 @@
 import math
 from typing import NamedTuple
 
-from numba.extending import register_jitable
-
+from buoyancy_mj.kernels.compiling import register_jitable
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.sensors.echoes import Echoes, drop_dry, find_surface

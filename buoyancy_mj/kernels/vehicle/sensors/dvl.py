@@ -3,10 +3,8 @@
 import math
 from typing import Annotated, NamedTuple
 
-from numba import njit
-from numba.extending import register_jitable
-
 from buoyancy_mj.kernels.arrays import Doubles
+from buoyancy_mj.kernels.compiling import inner, njit, register_jitable
 from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.motion import find_depth, find_velocity, set_water_velocity
 from buoyancy_mj.kernels.vehicle.sensors.echoes import Echoes, drop_dry, find_end
@@ -62,7 +60,7 @@ def measure_dvl(sensor, equipment, sea):
             mount.truth[LOCK] = WATER
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _listen_to_bottom(sensor, equipment, at, velocity):
     """Set the speeds along the beams that met something; those beams as bits."""
     echoes, beams = sensor.echoes, 0
@@ -76,7 +74,7 @@ def _listen_to_bottom(sensor, equipment, at, velocity):
     return beams
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _listen_to_water(sensor, equipment, sea, at, velocity):
     """Set the speeds along the beams through the layer, where it is water; those beams as bits."""
     echoes, water, beams = sensor.echoes, sensor.mount.truth[:LOCK], 0
@@ -90,7 +88,7 @@ def _listen_to_water(sensor, equipment, sea, at, velocity):
     return beams
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def _project(way, ours, theirs):
     """How fast one moves towards another along a way [m/s]."""
     return (
@@ -100,7 +98,7 @@ def _project(way, ours, theirs):
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _solve(sensor, beams):
     """Write the velocity that fits the speeds along some beams; whether they are enough."""
     truth, speeds = sensor.mount.truth, sensor.speeds

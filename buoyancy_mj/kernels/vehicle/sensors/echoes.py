@@ -3,9 +3,8 @@
 import math
 from typing import Annotated, NamedTuple
 
-from numba import njit
-
 from buoyancy_mj.kernels.arrays import Doubles, Int32s
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.vehicle.motion import find_depth
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY, tangent
@@ -46,14 +45,14 @@ class Echoes(NamedTuple):
     """The geom that it meets."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def find_end(echoes, beam, at, length):
     """The point at a distance along a beam [m]."""
     x, y, z = triple(echoes.ways, beam, 0)
     return at[0] + length * x, at[1] + length * y, at[2] + length * z
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def drop_dry(echoes, equipment, sea, at):
     """Lose what was met in the air, and all where the site is in the air; whether that is wet."""
     is_wet = find_depth(sea, at, equipment.time) > 0.0
@@ -65,7 +64,7 @@ def drop_dry(echoes, equipment, sea, at):
     return is_wet
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def find_surface(sea, at, way, time, farthest):
     """How far it is along a ray to the surface of the water [m]; NaN for nothing within reach.
 
@@ -100,7 +99,7 @@ def find_surface(sea, at, way, time, farthest):
     return far if abs(depth) < NEAR and 0.0 <= far <= farthest else math.nan
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def _look(sea, at, way, time, far):
     """The depth at a distance along a ray, and how fast it grows there."""
     x, y, z = at[0] + far * way[0], at[1] + far * way[1], at[2] + far * way[2]

@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from buoyancy_mj.kernels.compiling import inner
 from buoyancy_mj.kernels.vectors import difference, rotate_back, triple
 from buoyancy_mj.kernels.vehicle.devices import Device
 from buoyancy_mj.kernels.vehicle.motion import find_depth, find_velocity
@@ -38,7 +38,7 @@ class HydrophoneSensor(NamedTuple):
     """From ping to ping [s]; 0 for a sound that never ends."""
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def measure_hydrophone(sensor, equipment, sea):
     """Range [m], bearing and elevation [rad] and travel time [s] of the sound that arrives now.
 
@@ -90,7 +90,7 @@ def measure_hydrophone(sensor, equipment, sea):
     return ping
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def hear_ping(sensor, equipment, ping):
     """Take a sample, whose range is its travel time's, noise and all."""
     mount = sensor.mount

@@ -6,7 +6,8 @@ Whoever asks for the noise of the same sample gets the same, whatever the thread
 import math
 
 import numpy as np
-from numba import njit
+
+from buoyancy_mj.kernels.compiling import inner, njit
 
 _GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 _FIRST, _SECOND = np.uint64(0xBF58476D1CE4E5B9), np.uint64(0x94D049BB133111EB)
@@ -15,7 +16,7 @@ _UNUSED_BITS = np.uint64(11)
 _LAST_PLACE = 2.0**-53
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def mix(word):
     """Spread each bit of a word over all 64: the finalizer of SplitMix64.
 
@@ -26,7 +27,7 @@ def mix(word):
     return word ^ (word >> _SHIFTS[2])
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def hash_words(seed, stream, sensor, sample, number):
     """One word of 64 random bits for five whole numbers, mixed in one after the other."""
     word = mix(np.uint64(seed) + _GOLDEN)
@@ -36,7 +37,7 @@ def hash_words(seed, stream, sensor, sample, number):
     return mix((word ^ np.uint64(number)) + _GOLDEN)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def draw_normal(
     seed,  # whole number of the user's
     stream,  # of the run
@@ -52,7 +53,7 @@ def draw_normal(
     return math.sqrt(-2.0 * math.log(above_0)) * math.cos(2.0 * math.pi * turn)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def draw_normals(seed, stream, sensor, first, number, out):
     """Write the noise of samples from the number `first` on to `out` (n,)."""
     for n in range(out.shape[0]):

@@ -8,9 +8,9 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from buoyancy_mj.kernels.arrays import Doubles
+from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vehicle.sensors.noise import draw_normal
 
 STREAM, TAKEN, SAMPLE, TIME, HELD = range(5)
@@ -45,7 +45,7 @@ class Mount(NamedTuple):
     """What it measures, without noise; NaN for nothing."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def find_sample(mount, equipment):
     """The number of the sample that is due; each falls on the step nearest to its time."""
     timestep = equipment.option.timestep
@@ -53,14 +53,14 @@ def find_sample(mount, equipment):
     return np.int64(math.floor((equipment.time + 0.5 * timestep) / period))
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def is_held(mount, equipment, sample):
     """Whether a sample was taken before; one that was taken at this very time is taken anew."""
     held = equipment.sensing.plugin_state[mount.state : mount.state + HELD]
     return held[TAKEN] != 0.0 and held[SAMPLE] == sample and held[TIME] != equipment.time
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def hold_sample(mount, equipment):
     """Read what the last sample read."""
     state, data = equipment.sensing.plugin_state, equipment.sensing.sensordata
@@ -68,7 +68,7 @@ def hold_sample(mount, equipment):
         data[mount.address + n] = state[mount.state + HELD + n]
 
 
-@njit(cache=True, error_model="numpy")
+@inner
 def take_sample(mount, equipment, sample):
     """Read what was measured, with bias and noise, and hold it."""
     state, data = equipment.sensing.plugin_state, equipment.sensing.sensordata

@@ -2,9 +2,7 @@
 
 from typing import NamedTuple
 
-from numba import njit
-from numba.extending import register_jitable
-
+from buoyancy_mj.kernels.compiling import njit, register_jitable
 from buoyancy_mj.kernels.multibody import downward_gravity
 from buoyancy_mj.kernels.vectors import rotate_back, triple
 from buoyancy_mj.kernels.vehicle.devices import Device
@@ -22,7 +20,7 @@ class SiteSensor(NamedTuple):
     """What it means stands with each that reads it."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
 def find_site(mount, equipment):
     """Where a sensor is [m]."""
     return triple(equipment.sites.site_xpos, mount.site, 0)
