@@ -1,4 +1,4 @@
-"""Steps of scenes: with water and without, in seas, in batches, as whole runs, and the first."""
+"""Steps of scenes: with water and without, in batches, as whole runs, and the first."""
 
 import dataclasses
 import statistics
@@ -13,15 +13,16 @@ import mujoco
 import numpy as np
 from mujoco import batch
 
-from buoyancy_mj import JonswapSea, RegularWave, Scene, Simulation, read_scene
+from benchmarks.stretches import Plan, find_starts, time_steps
+from buoyancy_mj import Scene, Simulation, Start, read_scene
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.viz.recording import Recording
 
 Results = dict[str, dict[str, float]]
 """Values by scene or model of pressure, and by what differs."""
-COMPONENTS = 64
-"""Waves of the sea."""
+STRETCH = 20
+"""Steps that are timed at once."""
 COPIES = 64
 """Simulations of a batch."""
 
@@ -46,19 +47,16 @@ def measure_step(quick: bool) -> Results:
 
 
 def _mean_step(scene: Scene, quick: bool) -> dict[str, float]:
-    """Mean time of one step [s] over the whole of a scene, with compiled water and without."""
-    times = {}
-    for label, with_water in (("with", True), ("without", False)):
-        best = np.inf
-        for _ in range(1 if quick else 3):
-            model, data, _ = assemble(scene, with_water=with_water)
-            mujoco.mj_forward(model, data)
-            steps = round(scene.duration / scene.timestep)
-            started = time.perf_counter()
-            mujoco.mj_step(model, data, steps)
-            best = min(best, (time.perf_counter() - started) / steps)
-        times[label] = best
-    return times
+    """Mean time of one step [s] over the whole of a scene, with compiled water and without.
+
+    The steps without start from the same states, lest they go on the ground.
+    """
+    model, data, _ = assemble(scene, with_water=True)
+    mujoco.mj_forward(model, data)
+    bare, _, _ = assemble(dataclasses.replace(scene, start=Start()))
+    starts = round(scene.duration / scene.timestep / STRETCH)
+    plan = Plan(starts, apart=STRETCH, steps=STRETCH, rounds=2 if quick else 10)
+    return time_steps({"with": model, "without": bare}, find_starts(model, data, plan), plan)
 
 
 def describe_step(results: Results) -> Iterator[str]:
@@ -67,37 +65,6 @@ def describe_step(results: Results) -> Iterator[str]:
         yield (
             f"mean step of {name}: {step['with'] * 1e6:.1f} us with water, "
             f"{step['without'] * 1e6:.1f} us without, {step['with'] / step['without']:.1f} x"
-        )
-
-
-# a sea of many waves
-
-
-def measure_sea(quick: bool) -> Results:
-    """Measure the water's part of a step [s] in one wave and in a sea of the same energy."""
-    scene = _load_scene("auv_sea_state_2", f"duration={1 if quick else 10}")
-    waves = {
-        "one wave": RegularWave(0.3 / np.sqrt(8.0), period=3.5),
-        "sea": JonswapSea(0.3, 3.5, components=COMPONENTS, spreading=10.0),
-    }
-    results: Results = {}
-    for pressure in ("archimedes", "froude-krylov"):
-        results[pressure] = {}
-        for label, wave in waves.items():
-            water = dataclasses.replace(scene.water, waves=wave)
-            sea = dataclasses.replace(scene, water=water, pressure=pressure)
-            step = _mean_step(sea, quick)
-            results[pressure][label] = step["with"] - step["without"]
-    return results
-
-
-def describe_sea(results: Results) -> Iterator[str]:
-    """Describe each model of pressure in a line."""
-    for pressure, row in results.items():
-        yield (
-            f"water's part of a step of auv_sea_state_2, {pressure}: "
-            f"{row['one wave'] * 1e6:.1f} us in one wave, {row['sea'] * 1e6:.1f} us in "
-            f"{COMPONENTS}, {row['sea'] / row['one wave']:.1f} x"
         )
 
 

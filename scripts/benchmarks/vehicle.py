@@ -1,11 +1,11 @@
 """What the equipment of a vehicle adds to a step: its eight thrusters, and ten sensors."""
 
-import time
 from collections.abc import Iterator, Sequence
 
 import mujoco
 import numpy as np
 
+from benchmarks.stretches import Plan, find_starts, time_steps
 from buoyancy_mj import (
     Altimeter,
     Depth,
@@ -39,8 +39,6 @@ TEN = {
 """One of each kind, and depth twice; each reads in each step."""
 COMMANDS = (10.0, -10.0, -10.0, 10.0, 10.0, 10.0, -10.0, -10.0)
 """Of the thrusters [N]: together they do nothing, so that the vehicle goes as it does without."""
-STEPS, STRETCHES = 20, 50
-"""Steps of a stretch that is timed, and how many of them make the ten seconds of the scene."""
 
 
 def measure(quick: bool) -> dict[str, float]:
@@ -52,29 +50,10 @@ def measure(quick: bool) -> dict[str, float]:
     }
     if not quick:
         models |= {name: build([name], thrusters=False) for name in TEN}
-    starts = _run(models["none"])
-    times = {label: np.full(STRETCHES, np.inf) for label in models}
-    # from the same states, time of the thread, in turns, the best of each: others may be at work
-    for _ in range(3 if quick else 10):
-        for label, model in models.items():
-            data = mujoco.MjData(model)
-            data.ctrl[:] = COMMANDS[: model.nu]
-            for stretch, (clock, qpos, qvel) in enumerate(starts):
-                data.time, data.qpos[:], data.qvel[:] = clock, qpos, qvel
-                started = time.thread_time()
-                mujoco.mj_step(model, data, STEPS)
-                spent = (time.thread_time() - started) / STEPS
-                times[label][stretch] = min(times[label][stretch], spent)
-    return {label: float(best.mean()) for label, best in times.items()}
-
-
-def _run(model: mujoco.MjModel) -> list[tuple[float, np.ndarray, np.ndarray]]:
-    """Time [s], positions and velocities at the beginning of each stretch of a run."""
-    data, starts = mujoco.MjData(model), []
-    for _ in range(STRETCHES):
-        starts.append((data.time, data.qpos.copy(), data.qvel.copy()))
-        mujoco.mj_step(model, data, STEPS)
-    return starts
+    plan = Plan(starts=50, apart=20, steps=20, rounds=3 if quick else 10)
+    starts = find_starts(models["none"], mujoco.MjData(models["none"]), plan)
+    commanded = [start._replace(ctrl=np.array(COMMANDS)) for start in starts]
+    return time_steps(models, commanded, plan)
 
 
 def build(names: Sequence[str], *, thrusters: bool) -> mujoco.MjModel:

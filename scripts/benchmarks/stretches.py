@@ -1,0 +1,73 @@
+"""Steps of several models from the same states, timed in turns."""
+
+import time
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Start(NamedTuple):
+    """The state at the beginning of a stretch of steps."""
+
+    time: float
+    """[s]."""
+    qpos: NDArray[np.float64]
+    """Positions (nq,)."""
+    qvel: NDArray[np.float64]
+    """Velocities (nv,)."""
+    ctrl: NDArray[np.float64]
+    """Commands (nu,)."""
+
+
+class Plan(NamedTuple):
+    """Where to time, how long, and how often."""
+
+    starts: int
+    """How many stretches."""
+    apart: int
+    """Steps from the start of one to that of the next."""
+    steps: int
+    """Steps of each that are timed; the rest of the way is gone once."""
+    rounds: int
+    """How often each is timed."""
+
+
+def find_starts(model: mujoco.MjModel, data: mujoco.MjData, plan: Plan) -> list[Start]:
+    """Run the data on, and keep the states where stretches start."""
+    starts = []
+    for _ in range(plan.starts):
+        starts.append(
+            Start(data.time, data.qpos.copy(), data.qvel.copy(), data.ctrl[: model.nu].copy())
+        )
+        mujoco.mj_step(model, data, plan.apart)
+    return starts
+
+
+def time_steps(
+    models: Mapping[str, mujoco.MjModel], starts: Sequence[Start], plan: Plan
+) -> dict[str, float]:
+    """Mean time [s] of a step of each model, over stretches from the same states.
+
+    Others may be at work on the machine: it is the time of the thread, models take turns, and of
+    each stretch the quickest round counts.
+    """
+    best = {label: np.full(len(starts), np.inf) for label in models}
+    datas = {label: mujoco.MjData(model) for label, model in models.items()}
+    for _ in range(plan.rounds):
+        for label, model in models.items():
+            for stretch, start in enumerate(starts):
+                spent = _time_stretch(model, datas[label], start, plan.steps)
+                best[label][stretch] = min(best[label][stretch], spent)
+    return {label: float(times.mean()) for label, times in best.items()}
+
+
+def _time_stretch(model: mujoco.MjModel, data: mujoco.MjData, start: Start, steps: int) -> float:
+    """Time of a step [s]."""
+    data.time, data.qpos[:], data.qvel[:] = start.time, start.qpos, start.qvel
+    data.ctrl[:] = start.ctrl[: model.nu]
+    started = time.thread_time()
+    mujoco.mj_step(model, data, steps)
+    return (time.thread_time() - started) / steps
