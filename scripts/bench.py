@@ -13,6 +13,7 @@ All values are medians or means over repeats:
 - vehicle: a step of a vehicle with its equipment against the same without;
 - sea: the water's part of a step on still water, in one wave, in 64 and in 260, of the AUV and of a
   catamaran of 4 m;
+- profile: where a step goes: the engine, the sea, the walk over meshes, pressure, drag, added mass;
 - batch: batches on one thread and on two;
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
 - first_step: the time from a fresh interpreter through the first step;
@@ -25,7 +26,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks import sea, statics, steps, submersion, tree, vehicle
+from benchmarks import profile, sea, statics, steps, submersion, tree, vehicle
 from rich.console import Console
 from rich.table import Table
 
@@ -45,6 +46,7 @@ BENCHMARKS = {
     "step": Benchmark(steps.measure_step, steps.describe_step),
     "vehicle": Benchmark(vehicle.measure, vehicle.describe),
     "sea": Benchmark(sea.measure, sea.describe),
+    "profile": Benchmark(profile.measure, profile.describe),
     "batch": Benchmark(steps.measure_batch, steps.describe_batch),
     "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time),
     "first_step": Benchmark(steps.measure_first_step, steps.describe_first_step),

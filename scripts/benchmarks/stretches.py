@@ -64,10 +64,22 @@ def time_steps(
     return {label: float(times.mean()) for label, times in best.items()}
 
 
+def forward(model: mujoco.MjModel, start: Start) -> mujoco.MjData:
+    """Data at the beginning of a stretch, all that follows from their state computed."""
+    data = mujoco.MjData(model)
+    _set_state(model, data, start)
+    mujoco.mj_forward(model, data)
+    return data
+
+
 def _time_stretch(model: mujoco.MjModel, data: mujoco.MjData, start: Start, steps: int) -> float:
     """Time of a step [s]."""
-    data.time, data.qpos[:], data.qvel[:] = start.time, start.qpos, start.qvel
-    data.ctrl[:] = start.ctrl[: model.nu]
+    _set_state(model, data, start)
     started = time.thread_time()
     mujoco.mj_step(model, data, steps)
     return (time.thread_time() - started) / steps
+
+
+def _set_state(model: mujoco.MjModel, data: mujoco.MjData, start: Start) -> None:
+    data.time, data.qpos[:], data.qvel[:] = start.time, start.qpos, start.qvel
+    data.ctrl[:] = start.ctrl[: model.nu]
