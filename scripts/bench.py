@@ -1,34 +1,57 @@
 """Measure how fast it is, as ratios side by side in one run.
 
     .venv/bin/python scripts/bench.py [--quick] [--only NAME ...] [--plot F.png] [--save F.json]
-        [--compare F.json]
+        [--compare F.json] [--publish NAME] [--pages]
 
-All values are medians or means over repeats:
+All values are medians, means or least values over repeats, in processor time where one thread is at
+work:
 
 - submersion: the public call against trimesh's capped slice, scipy's convex hull of the wet
   vertices, manifold3d's trim and, where it is installed (pip install '.[bench]'), Capytaine's
   immersed_part, on the same meshes and poses;
 - tree: the tree of moments against visiting all triangles;
 - step: a step of a scene with water against the same step without;
-- vehicle: a step of a vehicle with its equipment against the same without;
 - sea: the water's part of a step on still water, in one wave, in 64 and in 260, of the AUV and of a
   catamaran of 4 m;
 - profile: where a step goes: the engine, the sea, the walk over meshes, pressure, drag, added mass;
+- vehicle: a step of a vehicle with its equipment against the same without;
 - batch: batches on one thread and on two;
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
 - first_step: the time from a fresh interpreter through the first step;
-- statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections.
+- statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections;
+- memory: what water takes, for a model and for each of its data.
+
+--compare sets a run beside a saved one. What seems more than 5 % slower is measured again, up to
+twice, and the best of all counts; what stays slower is flagged, and the exit status is 1. Compare
+runs of one machine.
+
+--publish saves a run as docs/bench/NAME.json, draws docs/speed.png, and writes the tables in
+README.md and docs/guide/performance.md from all runs in that folder; --pages writes the tables
+without measuring. With --only, all else in the file stays as it was.
 """
 
 import argparse
-import json
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks import profile, sea, statics, steps, submersion, tree, vehicle
+from benchmarks import comparison, memory, profile, sea, statics, steps, submersion, tree, vehicle
+from benchmarks.machine import describe_machine
+from benchmarks.pages import ROOT, write_pages
+from benchmarks.rows import Row
+from benchmarks.runs import FOLDER, Run, read_run, read_runs, save_run
+from benchmarks.speed import draw_speed
 from rich.console import Console
 from rich.table import Table
+
+PICTURE = ROOT / "docs" / "speed.png"
+"""The picture that --publish draws."""
+
+
+def no_rows(_results: Any) -> Iterator[Row]:
+    """Rows of a benchmark that the pages do not show."""
+    yield from ()
 
 
 class Benchmark(NamedTuple):
@@ -38,40 +61,69 @@ class Benchmark(NamedTuple):
     """Measures it, with fewer sizes and repeats if its argument is True; nested results by name."""
     describe: Callable[[Any], Iterator[Table | str]]
     """Yields tables and lines that describe the results."""
+    rows: Callable[[Any], Iterator[Row]] = no_rows
+    """Yields what the pages show of them."""
 
 
 BENCHMARKS = {
-    "submersion": Benchmark(submersion.measure, submersion.describe),
+    "submersion": Benchmark(submersion.measure, submersion.describe, submersion.rows),
     "tree": Benchmark(tree.measure, tree.describe),
-    "step": Benchmark(steps.measure_step, steps.describe_step),
-    "vehicle": Benchmark(vehicle.measure, vehicle.describe),
-    "sea": Benchmark(sea.measure, sea.describe),
+    "step": Benchmark(steps.measure_step, steps.describe_step, steps.step_rows),
+    "sea": Benchmark(sea.measure, sea.describe, sea.rows),
     "profile": Benchmark(profile.measure, profile.describe),
-    "batch": Benchmark(steps.measure_batch, steps.describe_batch),
-    "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time),
-    "first_step": Benchmark(steps.measure_first_step, steps.describe_first_step),
-    "statics": Benchmark(statics.measure, statics.describe),
+    "vehicle": Benchmark(vehicle.measure, vehicle.describe, vehicle.rows),
+    "batch": Benchmark(steps.measure_batch, steps.describe_batch, steps.batch_rows),
+    "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time, steps.real_time_rows),
+    "first_step": Benchmark(
+        steps.measure_first_step, steps.describe_first_step, steps.first_step_rows
+    ),
+    "statics": Benchmark(statics.measure, statics.describe, statics.rows),
+    "memory": Benchmark(memory.measure, memory.describe, memory.rows),
 }
-"""The benchmarks by name, in the order in which they run."""
+"""The benchmarks by name, in the order in which they run and the pages show them."""
+ROWS = {name: benchmark.rows for name, benchmark in BENCHMARKS.items()}
+"""What gives the rows of each."""
 
 
 def main() -> None:
-    """Measure, print, plot, compare and save."""
+    """Measure, print, compare, save and publish."""
     options = parse_arguments()
+    if options.pages:
+        write_pages(read_runs(), ROWS)
+        return
     console = Console(width=140)
     results: dict[str, Any] = {}
-    for name, benchmark in BENCHMARKS.items():
-        if name in options.only:
-            results[name] = benchmark.measure(options.quick)
-            for part in benchmark.describe(results[name]):
-                console.print(part)
-    if options.plot and "submersion" in results:
-        submersion.plot(options.plot, results["submersion"])
+    for name in options.only:
+        results[name] = BENCHMARKS[name].measure(options.quick)
+        for part in BENCHMARKS[name].describe(results[name]):
+            console.print(part)
+
+    # beside an earlier run
+    changes: list[comparison.Change] = []
     if options.compare:
-        for line in compare(results, json.loads(options.compare.read_text())):
+        changes = comparison.compare(
+            results,
+            read_run(options.compare).results,
+            lambda name: BENCHMARKS[name].measure(options.quick),
+        )
+        for line in comparison.describe_changes(changes):
             console.print(line)
+    keep(options, Run(describe_machine(), results))
+    if comparison.find_slower(changes):
+        sys.exit(1)
+
+
+def keep(options: argparse.Namespace, run: Run) -> None:
+    """Draw, save and publish a run, as the options say."""
+    if options.plot:
+        draw_speed(options.plot, run.results)
     if options.save:
-        options.save.write_text(json.dumps(results, indent=2) + "\n")
+        save_run(options.save, run)
+    if options.publish:
+        path = FOLDER / f"{options.publish}.json"
+        save_run(path, run, keep=True)
+        draw_speed(PICTURE, read_run(path).results)
+        write_pages(read_runs(), ROWS)
 
 
 def parse_arguments() -> argparse.Namespace:
@@ -82,30 +134,18 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument(
         "--only", nargs="+", choices=names, default=names, help="measure these alone"
     )
-    parser.add_argument("--plot", type=Path, help="draw time against triangles into this picture")
-    parser.add_argument("--save", type=Path, help="write the measurements to this JSON file")
-    parser.add_argument("--compare", type=Path, help="set them beside those of this JSON file")
-    return parser.parse_args()
-
-
-def compare(results: dict[str, Any], earlier: dict[str, Any]) -> Iterator[str]:
-    """Yield a line for each value that earlier results have too."""
-    before = flatten(earlier)
-    for key, value in flatten(results).items():
-        if key in before and not key.endswith("triangles"):
-            ratio = value / before[key]
-            yield f"{key}: {value:.4g}, was {before[key]:.4g}, {ratio:.2f} x"
-
-
-def flatten(results: dict[str, Any], prefix: str = "") -> dict[str, float]:
-    """Flatten nested results, their names joined by slashes."""
-    flat: dict[str, float] = {}
-    for key, value in results.items():
-        if isinstance(value, dict):
-            flat |= flatten(value, f"{prefix}{key}/")
-        else:
-            flat[prefix + key] = value
-    return flat
+    parser.add_argument("--plot", type=Path, help="draw what was measured into this picture")
+    parser.add_argument("--save", type=Path, help="write the run to this JSON file")
+    parser.add_argument(
+        "--compare", type=Path, help="flag what is slower than in the run of this JSON file"
+    )
+    parser.add_argument(
+        "--publish", metavar="NAME", help="save as docs/bench/NAME.json, and write the pages"
+    )
+    parser.add_argument("--pages", action="store_true", help="write the pages, measure nothing")
+    options = parser.parse_args()
+    options.only = [name for name in names if name in options.only]
+    return options
 
 
 if __name__ == "__main__":

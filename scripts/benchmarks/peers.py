@@ -11,7 +11,14 @@ try:
 except ImportError:
     capytaine = None
 
-PEERS = ("trimesh", "scipy hull", "manifold3d", "Capytaine")
+CALLS = {
+    "trimesh": "trimesh's capped slice",
+    "scipy hull": "scipy's convex hull of the wet vertices",
+    "manifold3d": "manifold3d's trim",
+    "Capytaine": "Capytaine's immersed part",
+}
+"""What is called, by the names of the columns."""
+PEERS = tuple(CALLS)
 """Names of the columns."""
 
 

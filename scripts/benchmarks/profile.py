@@ -5,7 +5,6 @@ the other. What they and the engine sum up to is printed beside the step as a wh
 """
 
 import dataclasses
-import math
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -19,7 +18,9 @@ from numpy.typing import NDArray
 from rich.table import Table
 
 from benchmarks import sea
+from benchmarks.rows import describe_time
 from benchmarks.stretches import Plan, find_starts, forward, time_steps
+from benchmarks.timing import spent_since
 from buoyancy_mj import Buoyancy, Scene, Start, read_scene
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.kernels import clip, delivery, passes
@@ -53,7 +54,7 @@ _LEAST = 3e-4
 
 def measure(quick: bool) -> Results:
     """Measure `auv_waves`, `auv_sea_state_2` and a catamaran of 4 m in 64 waves, by pressure."""
-    plan = Plan(starts=32, apart=30, steps=2, rounds=3 if quick else 10)
+    plan = Plan(starts=16, apart=60, steps=2, rounds=5 if quick else 20)
     with tempfile.TemporaryDirectory() as folder:
         return {name: _measure_scene(scene, plan) for name, scene in _list_scenes(Path(folder))}
 
@@ -157,17 +158,17 @@ def _run_devices(count: int, model: mujoco.MjModel, datas: Sequence[mujoco.MjDat
 
 
 def _time(repeat: Callable[..., None], rounds: int, *arguments: Any) -> float:
-    """Time of the thread [s] of a function that repeats something over all states."""
+    """Least time of the thread [s] of a function that repeats something over all states."""
     repeat(1, *arguments)
     started = time.thread_time()
     repeat(1, *arguments)
-    count = 1 + int(_LEAST / max(time.thread_time() - started, 1e-6))
-    best = math.inf
+    count = 1 + int(_LEAST / max(spent_since(started), 1e-7))
+    times = []
     for _ in range(rounds):
         started = time.thread_time()
         repeat(count, *arguments)
-        best = min(best, (time.thread_time() - started) / count)
-    return best
+        times.append(spent_since(started) / count)
+    return min(times)
 
 
 @njit(cache=True, error_model="numpy")
@@ -227,13 +228,23 @@ def _augment(count, water, model, datas, masses, fresh):
 
 def describe(results: Results) -> Iterator[Table | str]:
     """Describe each scene in a row, parts as shares of the step."""
-    others = sorted({part for row in results.values() for part in row} - {STEP, ENGINE, *PARTS})
-    columns = (ENGINE, *PARTS, *others)
-    table = Table(title="where a step goes: processor time, per cent of the step as a whole")
-    for column in ("scene", STEP, *columns, "together"):
+    table = Table(title="where a step goes: processor time, as shares of the step as a whole")
+    for column in ("scene", STEP, *list_columns(results), "together"):
         table.add_column(column, justify="right")
-    for name, row in results.items():
-        shares = [100.0 * row.get(column, 0.0) / row[STEP] for column in columns]
-        cells = (f"{share:.0f}" for share in [*shares, sum(shares)])
-        table.add_row(name, f"{row[STEP] * 1e6:,.1f} us", *cells)
+    for name, cells in list_shares(results):
+        table.add_row(name, *cells)
     yield table
+
+
+def list_columns(results: Results) -> tuple[str, ...]:
+    """The parts of a step, those last that some scenes have alone."""
+    others = {part for row in results.values() for part in row} - {STEP, ENGINE, *PARTS}
+    return (ENGINE, *PARTS, *sorted(others))
+
+
+def list_shares(results: Results) -> Iterator[tuple[str, list[str]]]:
+    """Each scene with its step, the share of each part, and what they sum up to."""
+    columns = list_columns(results)
+    for name, row in results.items():
+        shares = [row.get(column, 0.0) / row[STEP] for column in columns]
+        yield name, [describe_time(row[STEP]), *(f"{n:.0%}" for n in [*shares, sum(shares)])]

@@ -11,6 +11,7 @@ import mujoco
 from rich.table import Table
 
 from benchmarks import catamaran
+from benchmarks.rows import Row, describe_time
 from benchmarks.stretches import Plan, find_starts, time_steps
 from buoyancy_mj import JonswapSea, RegularWave, Scene, Start, Water, read_scene
 from buoyancy_mj.scenes import catalog
@@ -142,3 +143,32 @@ def _describe_time(row: dict[str, float], sea: str) -> str:
     if sea not in row:
         return ""
     return f"{row[sea] * 1e6:,.1f} us, {row[sea] / row[ONE]:.2f} x"
+
+
+def rows(results: Results) -> Iterator[Row]:
+    """What many waves cost, and what the pressure of waves does."""
+    for name, found in results.items():
+        (_, plain), (full_label, full) = found.items()
+        where = f"water in a step of {name.replace('auv_sea_state_2', '`auv_sea_state_2`')}"
+        what = f"{where}, {FEW}"
+        yield Row(
+            f"{what}, {ARCHIMEDES}",
+            describe_time(plain[FEW]),
+            plain[FEW] / plain[ONE],
+            f"as long as in {ONE}",
+            first=True,
+        )
+        yield Row(
+            f"{what}, {full_label}",
+            describe_time(full[FEW]),
+            full[FEW] / plain[FEW],
+            f"as long as {ARCHIMEDES}",
+        )
+        if MANY in plain:
+            for label, row in found.items():
+                yield Row(
+                    f"{where}, {MANY}, {label}",
+                    describe_time(row[MANY]),
+                    row[MANY] / row[FEW],
+                    f"as long as in {FEW}",
+                )

@@ -12,6 +12,7 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from benchmarks.peers import capytaine
+from benchmarks.rows import Row, describe_time
 from benchmarks.timing import ATTITUDES, median_time
 from buoyancy_mj import TriMesh, equilibria, equilibrium, hydrostatics, repair, righting_arm
 from buoyancy_mj.scenes import catalog
@@ -142,3 +143,22 @@ def describe(results: Results) -> Iterator[str]:
         if "Capytaine" in row:
             factor = row["Capytaine"] / row["hydrostatics"]
             yield f"    Capytaine's hydrostatics take {factor:,.0f} x as long"
+
+
+def rows(results: Results) -> Iterator[Row]:
+    """What the statics of the AUV and of the hull take."""
+    for name, row in results.items():
+        if name == "ball":
+            continue
+        called = (
+            "`sauvc_auv`" if name == "sauvc_auv" else f"a hull of {row['triangles']:,.0f} triangles"
+        )
+        factor = row["Capytaine"] / row["hydrostatics"] if "Capytaine" in row else None
+        yield Row(
+            f"hydrostatics of {called}",
+            describe_time(row["hydrostatics"]),
+            factor,
+            "as fast as Capytaine's",
+        )
+        for what in ("equilibrium", "every equilibrium", "righting arm", "inspect"):
+            yield Row(f"{what} of {called}", describe_time(row[what]))

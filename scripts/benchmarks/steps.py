@@ -13,6 +13,7 @@ import mujoco
 import numpy as np
 from mujoco import batch
 
+from benchmarks.rows import Row, describe_time
 from benchmarks.stretches import Plan, find_starts, time_steps
 from buoyancy_mj import Scene, Simulation, Start, read_scene
 from buoyancy_mj.scenes import catalog
@@ -68,6 +69,16 @@ def describe_step(results: Results) -> Iterator[str]:
         )
 
 
+def step_rows(results: Results) -> Iterator[Row]:
+    """A step of each scene, against the engine alone."""
+    for name, step in results.items():
+        scene, _, pressure = name.partition(", ")
+        what = f"step of `{scene}`" + (f", {pressure}" if pressure else "")
+        factor = step["with"] / step["without"]
+        first = not pressure
+        yield Row(what, describe_time(step["with"]), factor, "as long as the engine alone", first)
+
+
 # batches
 
 
@@ -106,6 +117,13 @@ def describe_batch(results: Results) -> Iterator[str]:
         )
 
 
+def batch_rows(results: Results) -> Iterator[Row]:
+    """Each scene on two threads."""
+    for name, factors in results.items():
+        what = f"{COPIES} of `{name}` in a batch on two threads"
+        yield Row(what, "", factors["2 threads"], "of real time", name == "auv_waves")
+
+
 # whole runs
 
 
@@ -138,6 +156,12 @@ def describe_real_time(results: dict[str, float]) -> Iterator[str]:
     )
 
 
+def real_time_rows(results: dict[str, float]) -> Iterator[Row]:
+    """A run without and with a recording."""
+    yield Row("`run auv_waves`, headless", "", results["headless"], "of real time", first=True)
+    yield Row("`run auv_waves`, recorded at 60 Hz", "", results["recorded"], "of real time")
+
+
 # the first step
 
 
@@ -158,3 +182,8 @@ def measure_first_step(_quick: bool) -> float:
 def describe_first_step(seconds: float) -> Iterator[str]:
     """Describe it in a line."""
     yield f"from a fresh interpreter through the first step of auv_waves: {seconds:.2f} s"
+
+
+def first_step_rows(seconds: float) -> Iterator[Row]:
+    """What it takes."""
+    yield Row("fresh interpreter through the first step of `auv_waves`", describe_time(seconds))

@@ -8,6 +8,8 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.timing import spent_since
+
 
 class Start(NamedTuple):
     """The state at the beginning of a stretch of steps."""
@@ -77,7 +79,7 @@ def _time_stretch(model: mujoco.MjModel, data: mujoco.MjData, start: Start, step
     _set_state(model, data, start)
     started = time.thread_time()
     mujoco.mj_step(model, data, steps)
-    return (time.thread_time() - started) / steps
+    return spent_since(started) / steps
 
 
 def _set_state(model: mujoco.MjModel, data: mujoco.MjData, start: Start) -> None:

@@ -1,13 +1,13 @@
 """One submersion by the public call, against other packages on the same meshes and poses."""
 
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import trimesh
 from rich.table import Table
 
-from benchmarks.peers import PEERS, Poses, capytaine
+from benchmarks.peers import CALLS, PEERS, Poses, capytaine
+from benchmarks.rows import Row, describe_time
 from benchmarks.timing import ATTITUDES, median_time
 from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, read_scene, submerge
 from buoyancy_mj.scenes import catalog
@@ -16,6 +16,8 @@ from buoyancy_mj.submersion.hull_set import HullSet
 
 LARGE = 5_000
 """Triangles from which exponents are fitted."""
+SHOWN = 81_920
+"""Triangles of the sphere that the pages show."""
 _MOST = 330_000
 """Triangles of the largest mesh, at most."""
 
@@ -90,8 +92,8 @@ def _bytes(mesh: TriMesh) -> int:
     return sum(values.nbytes for values in arrays)
 
 
-def _exponent(rows: list[Times], column: str) -> float:
-    """Exponent of the power law through times against triangles, from `LARGE` ones up."""
+def exponent(rows: list[Times], column: str) -> float:
+    """The exponent of the power law through times against triangles, from `LARGE` ones up."""
     large = [row for row in rows if column in row and row["triangles"] >= LARGE]
     if len(large) < 2:
         return float("nan")
@@ -115,33 +117,37 @@ def describe(results: Results) -> Iterator[Table | str]:
     yield table
 
     for shape, rows in results.items():
-        still, waves = (_exponent(list(rows.values()), surface) for surface in ("still", "waves"))
+        still, waves = (exponent(list(rows.values()), surface) for surface in ("still", "waves"))
         yield (
             f"{shape}: time grows as triangles^{still:.2f} on still water, ^{waves:.2f} in waves, "
             f"from {LARGE:,} up"
         )
 
 
-def plot(path: Path, results: Results) -> None:
-    """Draw time against triangles of the sphere, with the fitted exponents."""
-    from matplotlib.figure import Figure
-
-    rows = list(results["sphere"].values())
-    figure = Figure(figsize=(7, 4.5), layout="constrained")
-    axes = figure.add_subplot()
-    names = {"still": "still water", "waves": "in waves"} | {peer: peer for peer in PEERS}
-    for column, name in names.items():
-        points = [(row["triangles"], row[column] * 1e6) for row in rows if column in row]
-        if points:
-            exponent = _exponent(rows, column)
-            label = f"{name}, n^{exponent:.2f}" if np.isfinite(exponent) else name
-            width = 1.2 if column in PEERS else 2.5
-            axes.loglog(*zip(*points, strict=True), marker="o", lw=width, label=label)
-    axes.set(
-        xlabel="triangles",
-        ylabel="time of one submersion [us]",
-        title="a sphere in random attitudes",
-    )
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
-    figure.savefig(path, dpi=110)
+def rows(results: Results) -> Iterator[Row]:
+    """What the largest sphere that all know takes, against the others."""
+    spheres = list(results.get("sphere", {}).values())
+    for row in spheres:
+        if row["triangles"] == SHOWN:
+            what = f"submersion of a sphere of {SHOWN:,} triangles"
+            still = describe_time(row["still"])
+            for peer in PEERS:
+                if peer in row:
+                    factor = row[peer] / row["still"]
+                    first = peer == "trimesh"
+                    yield Row(what, still, factor, f"as fast as {CALLS[peer]}", first)
+            factor = row["waves"] / row["still"]
+            yield Row(
+                f"{what}, in a wave",
+                describe_time(row["waves"]),
+                factor,
+                "as long as on still water",
+            )
+    for surface, name in (("still", "on still water"), ("waves", "in a wave")):
+        exponents = [exponent(list(sizes.values()), surface) for sizes in results.values()]
+        if np.isfinite(exponents).all():
+            text = f"n^{min(exponents):.2f} to n^{max(exponents):.2f}"
+            yield Row(f"growth of time with triangles, {name}, over four shapes", text)
+    sizes = [row["bytes per triangle"] for sizes in results.values() for row in sizes.values()]
+    large = [size for size in sizes if size]
+    yield Row("memory of a mesh and its tree", f"{min(large):.0f} to {max(large):.0f} B a triangle")

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import mujoco
 import numpy as np
 
+from benchmarks.rows import Row, describe_time
 from benchmarks.stretches import Plan, find_starts, time_steps
 from buoyancy_mj import (
     Altimeter,
@@ -86,4 +87,14 @@ def describe(results: dict[str, float]) -> Iterator[str]:
     yield (
         f"a step of auv_waves: {results['all'] * 1e6:.1f} us with eight thrusters and ten sensors, "
         f"{bare * 1e6:.1f} us without, {results['all'] / bare:.3f} x"
+    )
+
+
+def rows(results: dict[str, float]) -> Iterator[Row]:
+    """All equipment together, against none."""
+    yield Row(
+        "step of `auv_waves` with eight thrusters and ten sensors",
+        describe_time(results["all"]),
+        results["all"] / results["none"],
+        "as long as without them",
     )

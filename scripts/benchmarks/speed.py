@@ -1,0 +1,63 @@
+"""The picture: time of a submersion against triangles, and where a step goes."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks import profile, submersion
+from benchmarks.peers import PEERS
+from benchmarks.rows import describe_time
+
+
+def draw_speed(path: Path, results: dict[str, Any]) -> None:
+    """Draw what was measured of both; nothing where neither was."""
+    from matplotlib.figure import Figure
+
+    draws = {"submersion": _draw_submersion, "profile": _draw_profile}
+    names = [name for name in draws if name in results]
+    if not names:
+        return
+    figure = Figure(figsize=(6.5 * len(names), 4.5), layout="constrained")
+    for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
+        draws[name](axes, results[name])
+    figure.savefig(path, dpi=110)
+
+
+def _draw_submersion(axes: Any, results: submersion.Results) -> None:
+    """Draw time against triangles of the sphere, with the fitted exponents."""
+    rows = list(results["sphere"].values())
+    names = {"still": "still water", "waves": "in a wave"} | {peer: peer for peer in PEERS}
+    for column, name in names.items():
+        points = [(row["triangles"], row[column] * 1e6) for row in rows if column in row]
+        if points:
+            exponent = submersion.exponent(rows, column)
+            label = f"{name}, n^{exponent:.2f}" if np.isfinite(exponent) else name
+            width = 1.2 if column in PEERS else 2.5
+            axes.loglog(*zip(*points, strict=True), marker="o", lw=width, label=label)
+    axes.set(
+        xlabel="triangles",
+        ylabel="time of one submersion [us]",
+        title="a sphere in random attitudes",
+    )
+    axes.grid(alpha=0.3)
+    axes.legend(fontsize=8)
+
+
+def _draw_profile(axes: Any, results: profile.Results) -> None:
+    """Draw the parts of a step side by side, a bar for each scene."""
+    scenes = list(reversed(results))
+    starts = np.zeros(len(scenes))
+    for part in profile.list_columns(results):
+        shares = np.array(
+            [
+                100.0 * results[scene].get(part, 0.0) / results[scene][profile.STEP]
+                for scene in scenes
+            ]
+        )
+        axes.barh(range(len(scenes)), shares, left=starts, label=part)
+        starts += shares
+    labels = [f"{scene}\n{describe_time(results[scene][profile.STEP])}" for scene in scenes]
+    axes.set_yticks(range(len(scenes)), labels, fontsize=8)
+    axes.set(xlabel="part of a step [%]", title="where a step goes", xlim=(0.0, 110.0))
+    axes.legend(fontsize=8, ncols=4, loc="upper center", bbox_to_anchor=(0.4, -0.14))
