@@ -1,7 +1,7 @@
 """Measure how fast it is, as ratios side by side in one run.
 
     .venv/bin/python scripts/bench.py [--quick] [--only NAME ...] [--plot F.png] [--save F.json]
-        [--compare F.json] [--publish NAME] [--pages]
+        [--compare F.json] [--publish NAME] [--pages] [--narrow]
 
 All values are medians, means or least values over repeats, in processor time where one thread is at
 work:
@@ -28,14 +28,19 @@ runs of one machine.
 --publish saves a run as docs/bench/NAME.json, draws docs/speed.png, and writes the tables in
 README.md and docs/guide/performance.md from all runs in that folder; --pages writes the tables
 without measuring. With --only, all else in the file stays as it was.
+
+--narrow compiles kernels as for a processor without AVX-512, into a cache of their own.
 """
 
 import argparse
+import os
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import llvmlite.binding as llvm
 from benchmarks import comparison, memory, profile, sea, statics, steps, submersion, tree, vehicle
 from benchmarks.machine import describe_machine
 from benchmarks.pages import ROOT, write_pages
@@ -91,6 +96,8 @@ def main() -> None:
     if options.pages:
         write_pages(read_runs(), ROWS)
         return
+    if options.narrow:
+        sys.exit(run_narrow())
     console = Console(width=140)
     results: dict[str, Any] = {}
     for name in options.only:
@@ -111,6 +118,19 @@ def main() -> None:
     keep(options, Run(describe_machine(), results))
     if comparison.find_slower(changes):
         sys.exit(1)
+
+
+def run_narrow() -> int:
+    """Run this script anew without AVX-512; its exit status."""
+    features = llvm.get_host_cpu_features()
+    features.update({name: False for name in features if name.startswith("avx512")})
+    own = {
+        "NUMBA_CPU_FEATURES": features.flatten(),
+        "NUMBA_CACHE_DIR": str(ROOT / "build" / "kernels-narrow"),
+    }
+    rest = [argument for argument in sys.argv if argument != "--narrow"]
+    command = [sys.executable, *rest]
+    return subprocess.run(command, env=os.environ | own, check=False).returncode
 
 
 def keep(options: argparse.Namespace, run: Run) -> None:
@@ -143,6 +163,7 @@ def parse_arguments() -> argparse.Namespace:
         "--publish", metavar="NAME", help="save as docs/bench/NAME.json, and write the pages"
     )
     parser.add_argument("--pages", action="store_true", help="write the pages, measure nothing")
+    parser.add_argument("--narrow", action="store_true", help="compile kernels as without AVX-512")
     options = parser.parse_args()
     options.only = [name for name in names if name in options.only]
     return options

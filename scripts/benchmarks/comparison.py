@@ -4,6 +4,7 @@ The work of others on a machine makes a time longer and never shorter. So what s
 measured again, and of all measurements the best counts. Only what is slower in each is told.
 """
 
+import statistics
 from collections.abc import Callable, Iterator, Mapping
 from fnmatch import fnmatch
 from typing import Any, NamedTuple
@@ -14,8 +15,8 @@ AGAIN = 2
 """How often what seems slower is measured again."""
 GAINS = ("batch/*", "real_time/*", "fleet/*")
 """Values of which more is better, by the patterns of their names; of all others less is."""
-LEFT_OUT = ("*triangles",)
-"""Values that are no measurements."""
+LEFT_OUT = ("*triangles", "profile/*", "memory/steps")
+"""Values that are no measurements, and small differences of large ones."""
 
 
 class Change(NamedTuple):
@@ -85,7 +86,12 @@ def describe_changes(changes: list[Change]) -> Iterator[str]:
         else:
             continue
         apart += 1
-    yield f"{len(changes) - apart} of {len(changes)} values are within {TOLERATED:.0%}"
+    if changes:
+        middle = statistics.median(change.slowdown for change in changes)
+        yield (
+            f"{len(changes) - apart} of {len(changes)} values are within {TOLERATED:.0%}; "
+            f"the middle one is {middle:.2f} x as slow"
+        )
 
 
 def keep_best(results: Any, others: Any, name: str) -> Any:
