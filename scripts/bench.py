@@ -10,6 +10,7 @@ work:
   vertices, manifold3d's trim and, where it is installed (pip install '.[bench]'), Capytaine's
   immersed_part, on the same meshes and poses;
 - tree: the tree of moments against visiting all triangles;
+- caches: a submersion with its mesh in the processor's caches, and in none;
 - step: a step of a scene with water against the same step without;
 - sea: the water's part of a step on still water, in one wave, in 64 and in 260, of the AUV and of a
   catamaran of 4 m;
@@ -19,7 +20,7 @@ work:
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
 - first_step: the time from a fresh interpreter through the first step;
 - statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections;
-- memory: what water takes, for a model and for each of its data.
+- memory: what each data of a model takes with water and without, and what steps take.
 
 --compare sets a run beside a saved one. What seems more than 5 % slower is measured again, up to
 twice, and the best of all counts; what stays slower is flagged, and the exit status is 1. Compare
@@ -41,7 +42,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
-from benchmarks import comparison, memory, profile, sea, statics, steps, submersion, tree, vehicle
+from benchmarks import (
+    caches,
+    comparison,
+    memory,
+    profile,
+    sea,
+    statics,
+    steps,
+    submersion,
+    tree,
+    vehicle,
+)
 from benchmarks.machine import describe_machine
 from benchmarks.pages import ROOT, write_pages
 from benchmarks.rows import Row
@@ -73,6 +85,7 @@ class Benchmark(NamedTuple):
 BENCHMARKS = {
     "submersion": Benchmark(submersion.measure, submersion.describe, submersion.rows),
     "tree": Benchmark(tree.measure, tree.describe),
+    "caches": Benchmark(caches.measure, caches.describe, caches.rows),
     "step": Benchmark(steps.measure_step, steps.describe_step, steps.step_rows),
     "sea": Benchmark(sea.measure, sea.describe, sea.rows),
     "profile": Benchmark(profile.measure, profile.describe),

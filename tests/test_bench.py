@@ -13,7 +13,7 @@ import pytest
 from buoyancy_mj import equilibrium
 
 ROOT = Path(__file__).parent.parent
-NAMES = ("submersion", "tree", "sea", "profile", "vehicle", "statics", "memory")
+NAMES = ("submersion", "tree", "caches", "sea", "profile", "vehicle", "statics", "memory")
 
 
 @pytest.fixture
@@ -34,6 +34,7 @@ def test_benchmarks_measure_print_and_save(tmp_path):
     for printed in (
         "one submersion",
         "by the tree",
+        "right after another",
         "eight thrusters",
         "water's part of a step",
         "where a step goes",

@@ -33,7 +33,8 @@ class Row(NamedTuple):
 
 def describe_factor(factor: float) -> str:
     """A factor, as '1,157 x' or '2.5 x'."""
-    return f"{factor:,.0f} x" if factor >= 20.0 else f"{factor:.1f} x"
+    digits = 0 if factor >= 20.0 else 1 if factor >= 2.0 else 2
+    return f"{factor:,.{digits}f} x"
 
 
 def describe_time(seconds: float) -> str:
