@@ -181,5 +181,6 @@ def test_stretches_start_from_the_states_of_one_run(modules):
     assert [start.time for start in starts] == pytest.approx([0.0, 0.02, 0.04])
     falls = [stretches.forward(model, start).qpos[2] for start in starts]
     assert np.diff(falls).max() < 0.0
-    times = stretches.time_steps({"one": model, "other": model}, starts, plan)
+    course = stretches.Course(model, starts)
+    times = stretches.time_steps({"one": course, "other": course}, plan)
     assert list(times) == ["one", "other"]

@@ -19,7 +19,7 @@ from rich.table import Table
 
 from benchmarks import sea
 from benchmarks.rows import describe_time
-from benchmarks.stretches import Plan, find_starts, forward, time_steps
+from benchmarks.stretches import Course, Plan, find_starts, forward, time_steps
 from benchmarks.timing import spent_since
 from buoyancy_mj import Buoyancy, Scene, Start, read_scene
 from buoyancy_mj.engine.plugin import water_in
@@ -75,7 +75,7 @@ def _measure_scene(scene: Scene, plan: Plan) -> dict[str, float]:
     mujoco.mj_forward(model, data)
     bare, _, _ = assemble(dataclasses.replace(scene, start=Start()))
     starts = find_starts(model, data, plan)
-    times = time_steps({STEP: model, ENGINE: bare}, starts, plan)
+    times = time_steps({STEP: Course(model, starts), ENGINE: Course(bare, starts)}, plan)
 
     # the mass matrix without added mass is the engine's own
     datas = [forward(model, start) for start in starts]

@@ -12,13 +12,13 @@ from rich.table import Table
 
 from benchmarks import catamaran
 from benchmarks.rows import Row, describe_time
-from benchmarks.stretches import Plan, find_starts, time_steps
+from benchmarks.stretches import Course, Plan, find_starts, time_steps
 from buoyancy_mj import JonswapSea, RegularWave, Scene, Start, Water, read_scene
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 
-QUICK = Plan(starts=8, apart=50, steps=3, rounds=2)
-THOROUGH = Plan(starts=20, apart=40, steps=5, rounds=6)
+QUICK = Plan(starts=8, apart=50, steps=3, rounds=3)
+THOROUGH = Plan(starts=20, apart=40, steps=5, rounds=10)
 """Over 4 and 8 s."""
 STILL, ONE, FEW, MANY = "still water", "1 wave", "64 waves", "260 waves"
 """The seas; each with waves has the same energy."""
@@ -96,25 +96,26 @@ def enter_sea(scene: Scene, case: Case, sea: str) -> Scene:
 def measure(quick: bool) -> Results:
     """Measure both vehicles."""
     plan = QUICK if quick else THOROUGH
-    results: Results = {}
     with tempfile.TemporaryDirectory() as folder:
-        for name, case in list_cases(Path(folder)).items():
-            results[name] = {
-                acting: {
-                    sea: _measure_water(enter_sea(scene, case, sea), plan) for sea in case.seas
-                }
-                for acting, scene in case.scenes.items()
-            }
-    return results
+        return {name: _measure_case(case, plan) for name, case in list_cases(Path(folder)).items()}
 
 
-def _measure_water(scene: Scene, plan: Plan) -> float:
+def _measure_case(case: Case, plan: Plan) -> dict[str, dict[str, float]]:
     """What a step takes longer than without water, from the same states [s]."""
-    model, data, _ = assemble(scene, with_water=True)
-    mujoco.mj_forward(model, data)
-    bare, _, _ = assemble(dataclasses.replace(scene, start=Start()))
-    times = time_steps({"wet": model, "bare": bare}, find_starts(model, data, plan), plan)
-    return times["wet"] - times["bare"]
+    courses = {}
+    for acting, scene in case.scenes.items():
+        bare, _, _ = assemble(dataclasses.replace(scene, start=Start()))
+        for sea in case.seas:
+            model, data, _ = assemble(enter_sea(scene, case, sea), with_water=True)
+            mujoco.mj_forward(model, data)
+            starts = find_starts(model, data, plan)
+            courses[acting, sea, "wet"] = Course(model, starts)
+            courses[acting, sea, "bare"] = Course(bare, starts)
+    times = time_steps(courses, plan)
+    return {
+        acting: {sea: times[acting, sea, "wet"] - times[acting, sea, "bare"] for sea in case.seas}
+        for acting in case.scenes
+    }
 
 
 def describe(results: Results) -> Iterator[Table | str]:

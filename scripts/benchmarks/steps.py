@@ -14,7 +14,7 @@ import numpy as np
 from mujoco import batch
 
 from benchmarks.rows import Row, describe_time
-from benchmarks.stretches import Plan, find_starts, time_steps
+from benchmarks.stretches import Course, Plan, find_starts, time_steps
 from buoyancy_mj import Scene, Simulation, Start, read_scene
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
@@ -55,9 +55,10 @@ def _mean_step(scene: Scene, quick: bool) -> dict[str, float]:
     model, data, _ = assemble(scene, with_water=True)
     mujoco.mj_forward(model, data)
     bare, _, _ = assemble(dataclasses.replace(scene, start=Start()))
-    starts = round(scene.duration / scene.timestep / STRETCH)
-    plan = Plan(starts, apart=STRETCH, steps=STRETCH, rounds=2 if quick else 10)
-    return time_steps({"with": model, "without": bare}, find_starts(model, data, plan), plan)
+    count = round(scene.duration / scene.timestep / STRETCH)
+    plan = Plan(count, apart=STRETCH, steps=STRETCH, rounds=2 if quick else 10)
+    starts = find_starts(model, data, plan)
+    return time_steps({"with": Course(model, starts), "without": Course(bare, starts)}, plan)
 
 
 def describe_step(results: Results) -> Iterator[str]:

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 
 from benchmarks.rows import Row, describe_time
-from benchmarks.stretches import Plan, find_starts, time_steps
+from benchmarks.stretches import Course, Plan, find_starts, time_steps
 from buoyancy_mj import (
     Altimeter,
     Depth,
@@ -54,7 +54,7 @@ def measure(quick: bool) -> dict[str, float]:
     plan = Plan(starts=50, apart=20, steps=20, rounds=3 if quick else 10)
     starts = find_starts(models["none"], mujoco.MjData(models["none"]), plan)
     commanded = [start._replace(ctrl=np.array(COMMANDS)) for start in starts]
-    return time_steps(models, commanded, plan)
+    return time_steps({name: Course(one, commanded) for name, one in models.items()}, plan)
 
 
 def build(names: Sequence[str], *, thrusters: bool) -> mujoco.MjModel:
