@@ -9,25 +9,24 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
-from numba import carray, njit
-from numpy.typing import NDArray
+from numba import njit
 from rich.table import Table
 
 from benchmarks import sea
 from benchmarks.rows import describe_time
 from benchmarks.stretches import Course, Plan, find_starts, forward, time_steps
 from benchmarks.timing import spent_since
-from buoyancy_mj import Buoyancy, Scene, Start, read_scene
+from buoyancy_mj import Scene, Start, read_scene
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.kernels import clip, delivery, passes
-from buoyancy_mj.kernels.entries.pointers import call, pointer
-from buoyancy_mj.kernels.entries.tables import WaterTable
+from buoyancy_mj.kernels.entries.pointers import call
+from buoyancy_mj.kernels.entries.tables import WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
-from buoyancy_mj.kernels.multibody import Engine, Geoms
+from buoyancy_mj.kernels.multibody import Engine
 from buoyancy_mj.kernels.passes import Record
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
@@ -35,6 +34,8 @@ from buoyancy_mj.scenes.assembly import assemble
 Results = dict[str, dict[str, float]]
 """Times [s] by scene and by part, and of the `STEP` as a whole."""
 
+STATES = 16
+"""How many; twice as many are at most `compiled.THREADS`, the records of a water."""
 STEP, ENGINE = "step", "engine"
 PARTS = ("sea", "walk", "pressure", "drag", "added mass", "projection", "devices")
 """The parts of the water. 'walk' is the submersion of the same hulls in the same poses under a flat
@@ -48,13 +49,22 @@ _PART_OF_LOAD = {
     "add_panel_drag": "drag",
     "add_reaction": "added mass",
 }
-_LEAST = 3e-4
-"""How long [s] the repeats of a part take together, at least."""
+_LEAST = 2e-5
+"""How long [s] the repeats of a part take together in a state, at least."""
+
+
+class Call(NamedTuple):
+    """Something that is timed."""
+
+    repeat: Callable[..., None]
+    """Does it as often as its first argument says, in the state of its second one."""
+    arguments: tuple[Any, ...]
+    """Its other arguments."""
 
 
 def measure(quick: bool) -> Results:
     """Measure `auv_waves`, `auv_sea_state_2` and a catamaran of 4 m in 64 waves, by pressure."""
-    plan = Plan(starts=16, apart=60, steps=2, rounds=5 if quick else 20)
+    plan = Plan(STATES, apart=60, steps=2, rounds=8 if quick else 20)
     with tempfile.TemporaryDirectory() as folder:
         return {name: _measure_scene(scene, plan) for name, scene in _list_scenes(Path(folder))}
 
@@ -75,109 +85,111 @@ def _measure_scene(scene: Scene, plan: Plan) -> dict[str, float]:
     mujoco.mj_forward(model, data)
     bare, _, _ = assemble(dataclasses.replace(scene, start=Start()))
     starts = find_starts(model, data, plan)
-    times = time_steps({STEP: Course(model, starts), ENGINE: Course(bare, starts)}, plan)
+    steps = time_steps({STEP: Course(model, starts), ENGINE: Course(bare, starts)}, plan)
 
-    # the mass matrix without added mass is the engine's own
+    # calls over all states, and their sums by part
     datas = [forward(model, start) for start in starts]
     dry = [forward(bare, start) for start in starts]
-    masses = np.array([data.M for data in dry])
-    devices, bare_devices = (
-        _time(_run_devices, plan.rounds, *pair) / len(starts)
-        for pair in ((model, datas), (bare, dry))
-    )
-    parts = _time_parts(water_in(model), model, datas, masses, plan.rounds)
-    return times | parts | {"devices": devices - bare_devices}
+    calls = _list_calls(model, datas, dry)
+    times = _time_in_turns([call for _, _, call in calls], len(starts), plan.rounds)
+    parts = dict.fromkeys(PARTS, 0.0)
+    for (part, sign, _), seconds in zip(calls, times, strict=True):
+        parts[part] = parts.get(part, 0.0) + sign * seconds
+    return steps | parts
 
 
-def _time_parts(
-    water: Buoyancy,
-    model: mujoco.MjModel,
-    datas: Sequence[mujoco.MjData],
-    masses: NDArray[np.float64],
-    rounds: int,
-) -> dict[str, float]:
-    """Mean times [s] of the parts of a pass.
+def _list_calls(
+    model: mujoco.MjModel, datas: Sequence[mujoco.MjData], dry: Sequence[mujoco.MjData]
+) -> list[tuple[str, float, Call]]:
+    """The calls whose times make the parts: the part, the sign of the time in it, and the call.
 
     Args:
-        water: the water of the model.
         model: the model.
-        datas: its data in several states, at most `compiled.THREADS`.
-        masses: mass matrices (n, nC) in these states, without added mass.
-        rounds: how often each part is timed; the quickest counts.
+        datas: its data in several states.
+        dry: data of the model without water in the same states.
     """
+    water = water_in(model)
     load_model = water.acting.load_model
     addresses = np.array([data._address for data in datas])
     places = water.compiled.address, model._address, addresses
-    parts = dict.fromkeys(PARTS, 0.0)
 
     # the submersion, under a flat surface and under the waves
-    arrays, scratch = load_model.arrays, load_model.scratch.cut
-    positions = np.array([data.geom_xpos for data in datas])
-    rotations = np.array([data.geom_xmat for data in datas])
     now = np.array([data.time for data in datas])
     x, y, _ = np.transpose([data.subtree_com[water.bodies[0]] for data in datas])
-    wet = np.zeros((len(arrays.owners), clip.COLUMNS))
-    seas = (
-        (water.water.elevation(x, y, now), arrays.sea.waves[:0]),
-        (np.full(len(datas), arrays.sea.level), arrays.sea.waves),
-    )
-    flat, waved = (
-        _time(
-            _submerge,
-            rounds,
-            arrays.hulls,
-            positions,
-            rotations,
-            levels,
-            *(waves, now, scratch, wet),
-        )
-        for levels, waves in seas
-    )
-    parts["walk"], parts["sea"] = flat, waved - flat
+    sea = load_model.arrays.sea
+    flat = water.water.elevation(x, y, now), 0
+    waved = np.full(len(datas), sea.level), len(sea.waves)
+    under_flat = Call(_submerge, (*places, *flat))
+    under_waves = Call(_submerge, (*places, *waved))
+    calls = [("walk", 1.0, under_flat), ("sea", 1.0, under_waves), ("sea", -1.0, under_flat)]
 
-    # the loads, the mass matrix, and the forces on joints
+    # the loads, the forces on joints, and the mass matrix, from that without water
     _begin(*places)
     for i, load in enumerate(load_model.acting):
         part = _PART_OF_LOAD.get(load.__name__, load.__name__.removeprefix("add_"))
-        parts[part] = parts.get(part, 0.0) + _time(_act, rounds, *places, i)
-    parts["projection"] = _time(_deliver, rounds, *places)
+        calls.append((part, 1.0, Call(_act, (*places, i))))
+    calls.append(("projection", 1.0, Call(_deliver, places)))
     if load_model.augments:
-        addresses_of_masses = np.array([data.M.ctypes.data for data in datas])
-        parts["added mass"] += _time(_augment, rounds, *places, addresses_of_masses, masses)
-    return {part: seconds / len(datas) for part, seconds in parts.items()}
+        masses = np.array([data.M for data in dry])
+        calls.append(("added mass", 1.0, Call(_augment, (*places, masses))))
+    calls.append(("devices", 1.0, Call(_run_devices, (model, datas))))
+    calls.append(("devices", -1.0, Call(_run_devices, (dry[0].model, dry))))
+    return calls
 
 
-def _run_devices(count: int, model: mujoco.MjModel, datas: Sequence[mujoco.MjData]) -> None:
-    """Run actuators and sensors, some of which look at the water."""
-    for _ in range(count):
-        for data in datas:
-            mujoco.mj_fwdActuation(model, data)
-            mujoco.mj_sensorPos(model, data)
-            mujoco.mj_sensorVel(model, data)
-            mujoco.mj_sensorAcc(model, data)
-
-
-def _time(repeat: Callable[..., None], rounds: int, *arguments: Any) -> float:
-    """Least time of the thread [s] of a function that repeats something over all states."""
-    repeat(1, *arguments)
-    started = time.thread_time()
-    repeat(1, *arguments)
-    count = 1 + int(_LEAST / max(spent_since(started), 1e-7))
-    times = []
+def _time_in_turns(calls: Sequence[Call], states: int, rounds: int) -> list[float]:
+    """Times of the thread [s] of calls, means over states, of each the quickest round."""
+    counts = []
+    for one in calls:
+        _time(one, 1, 0)
+        counts.append(1 + int(_LEAST / max(_time(one, 1, 0), 1e-7)))
+    best, ways = np.full((len(calls), states), np.inf), np.full(len(calls), np.inf)
     for _ in range(rounds):
-        started = time.thread_time()
-        repeat(count, *arguments)
-        times.append(spent_since(started) / count)
-    return min(times)
+        for n, (one, count) in enumerate(zip(calls, counts, strict=True)):
+            for i in range(states):
+                # without the way from Python and back
+                ways[n] = min(ways[n], _time(one, 0, i))
+                best[n, i] = min(best[n, i], _time(one, count, i))
+    spent = best.mean(axis=1) - ways
+    return [float(seconds) / count for seconds, count in zip(spent, counts, strict=True)]
+
+
+def _time(one: Call, count: int, state: int) -> float:
+    """Time of the thread [s] of a call that does something `count` times in a state."""
+    started = time.thread_time()
+    one.repeat(count, state, *one.arguments)
+    return spent_since(started)
+
+
+def _run_devices(
+    count: int, state: int, model: mujoco.MjModel, datas: Sequence[mujoco.MjData]
+) -> None:
+    """Run actuators and sensors, some of which look at the water."""
+    data = datas[state]
+    for _ in range(count):
+        mujoco.mj_fwdActuation(model, data)
+        mujoco.mj_sensorPos(model, data)
+        mujoco.mj_sensorVel(model, data)
+        mujoco.mj_sensorAcc(model, data)
 
 
 @njit(cache=True, error_model="numpy")
-def _submerge(count, hulls, positions, rotations, levels, waves, now, scratch, out):
-    """Submerge all hulls, again and again, in each state."""
+def _submerge(count, state, water, model, datas, levels, waves):
+    """Submerge all hulls under the first so many waves, and leave that in a record of its own."""
+    table = view(water, WaterTable)
+    engine = view_engine(model, datas[state], table.offsets, Engine)
+    hulls, sea, scratch = table.loads.hulls, table.loads.sea, view(table.pool[0], Workplace).scratch
+    wet = view(table.records[STATES + state], Record).wet
     for _ in range(count):
-        for i in range(len(now)):
-            geoms = Geoms(positions[i], rotations[i])
-            clip.submerge_hulls(hulls, geoms, levels[i], waves, now[i], scratch, out)
+        clip.submerge_hulls(
+            hulls,
+            engine.geoms,
+            levels[state],
+            sea.waves[:waves],
+            engine.time,
+            scratch.cut,
+            wet,
+        )
 
 
 @njit(cache=True, error_model="numpy")
@@ -185,45 +197,42 @@ def _begin(water, model, datas):
     """Find what is wet in each state, for the loads to read."""
     table = view(water, WaterTable)
     for i in range(len(datas)):
-        arguments = model, datas[i], table.records[i], water, table.pool[0]
-        call(table.links.submerge, arguments)
+        words = model, datas[i], table.records[i], water, table.pool[0]
+        call(table.links.submerge, words)
         passes.begin(table.loads, view(table.records[i], Record))
 
 
 @njit(cache=True, error_model="numpy")
-def _act(count, water, model, datas, load):
+def _act(count, state, water, model, datas, load):
     """Add one of the loads that act."""
     table = view(water, WaterTable)
+    words = model, datas[state], table.records[state], water, table.pool[0]
     for _ in range(count):
-        for i in range(len(datas)):
-            arguments = model, datas[i], table.records[i], water, table.pool[0]
-            call(table.acting[load], arguments)
+        call(table.acting[load], words)
 
 
 @njit(cache=True, error_model="numpy")
-def _deliver(count, water, model, datas):
+def _deliver(count, state, water, model, datas):
     """Sum up, and add the sum to the engine's forces."""
     table = view(water, WaterTable)
+    record = view(table.records[state], Record)
+    engine = view_engine(model, datas[state], table.offsets, Engine)
     for _ in range(count):
-        for i in range(len(datas)):
-            record = view(table.records[i], Record)
-            engine = view_engine(model, datas[i], table.offsets, Engine)
-            passes.begin(table.loads, record)
-            passes.end(engine, record)
-            delivery.deliver(table.loads, engine, record)
+        passes.begin(table.loads, record)
+        passes.end(engine, record)
+        delivery.deliver(table.loads, engine, record)
 
 
 @njit(cache=True, error_model="numpy")
-def _augment(count, water, model, datas, masses, fresh):
+def _augment(count, state, water, model, datas, masses):
     """Add added mass to the mass matrix, and factorise that."""
     table = view(water, WaterTable)
+    engine = view_engine(model, datas[state], table.offsets, Engine)
+    words = model, datas[state], table.records[state], water
     for _ in range(count):
-        for i in range(len(datas)):
-            mass = carray(pointer(masses[i]), (fresh.shape[1],), np.float64)
-            mass[:] = fresh[i]
-            arguments = model, datas[i], table.records[i], water
-            if call(table.links.augment, arguments) != delivery.UNCHANGED:
-                call(table.links.factor, (model, datas[i]))
+        engine.mass_matrix.M[:] = masses[state]
+        if call(table.links.augment, words) != delivery.UNCHANGED:
+            call(table.links.factor, (model, datas[state]))
 
 
 def describe(results: Results) -> Iterator[Table | str]:
