@@ -3,8 +3,8 @@
     .venv/bin/python scripts/bench.py [--quick] [--only NAME ...] [--plot F.png] [--save F.json]
         [--compare F.json] [--publish NAME] [--pages] [--narrow]
 
-All values are medians, means or least values over repeats, in processor time where one thread is at
-work:
+All values are means over poses or states, of each the least of several measurements, in processor
+time but for batches, runs and first steps:
 
 - submersion: the public call against trimesh's capped slice, scipy's convex hull of the wet
   vertices, manifold3d's trim and, where it is installed (pip install '.[bench]'), Capytaine's

@@ -1,10 +1,10 @@
 """Vehicles at rest: hydrostatics, equilibria, righting arms, and a whole inspection."""
 
+import os
 import subprocess
 import sys
 import tempfile
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from benchmarks.peers import capytaine
 from benchmarks.rows import Row, describe_time
-from benchmarks.timing import ATTITUDES, median_time
+from benchmarks.timing import ATTITUDES, time_calls
 from buoyancy_mj import TriMesh, equilibria, equilibrium, hydrostatics, repair, righting_arm
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
@@ -93,29 +93,29 @@ def _measure_vehicle(path: Path, quick: bool) -> dict[str, float]:
         [*model.qpos0[:3], *Rotation.from_euler("x", 0.1 + 0.1 * i).as_quat(scalar_first=True)]
         for i in range(len(ATTITUDES))
     ]
-    times = {"triangles": float(sum(len(mesh.faces) for mesh in vessel.meshes))}
-    for name, call in (
-        ("hydrostatics", lambda i: hydrostatics(model, qpos=starts[i])),
-        ("equilibrium", lambda i: equilibrium(model, start=starts[i])),
-        ("once more from the same vessel", lambda i: find_balance(vessel, ATTITUDES[i])),
-        ("every equilibrium", lambda _: equilibria(model)),
-        ("righting arm", lambda _: righting_arm(model)),
-    ):
-        times[name] = median_time(call, quick, fewest=3)
+    calls = {
+        "hydrostatics": lambda i: hydrostatics(model, qpos=starts[i]),
+        "equilibrium": lambda i: equilibrium(model, start=starts[i]),
+        "once more from the same vessel": lambda i: find_balance(vessel, ATTITUDES[i]),
+        "every equilibrium": lambda _: equilibria(model),
+        "righting arm": lambda _: righting_arm(model),
+    }
+    triangles = float(sum(len(mesh.faces) for mesh in vessel.meshes))
+    if capytaine is not None and triangles < 20_000:
+        calls["Capytaine"] = _capytaine_of(vessel)
+    times = {"triangles": triangles} | time_calls(calls, quick)
 
     # the command
-    started = time.perf_counter()
+    before = os.times()
     command = [sys.executable, "-m", "buoyancy_mj", "inspect", str(path)]
     subprocess.run(command, check=True, capture_output=True)
-    times["inspect"] = time.perf_counter() - started
-
-    if capytaine is not None and times["triangles"] < 20_000:
-        times["Capytaine"] = _measure_capytaine(vessel, quick)
+    after = os.times()
+    times["inspect"] = sum(after[2:4]) - sum(before[2:4])
     return times
 
 
-def _measure_capytaine(vessel: Vessel, quick: bool) -> float:
-    """Measure Capytaine's hydrostatics of all meshes joined."""
+def _capytaine_of(vessel: Vessel) -> Callable[[int], object]:
+    """Capytaine's hydrostatics of all meshes joined."""
     parts = [mesh.transformed(vessel.rotation, vessel.position) for mesh in vessel.meshes]
     firsts = np.cumsum([0] + [len(part.vertices) for part in parts])
     mesh = capytaine.Mesh(
@@ -128,7 +128,7 @@ def _measure_capytaine(vessel: Vessel, quick: bool) -> float:
         center_of_mass=vessel.position,
         mass=vessel.mass,
     )
-    return median_time(lambda _: body.compute_hydrostatics(rho=1000.0, g=9.81), quick, fewest=3)
+    return lambda _: body.compute_hydrostatics(rho=1000.0, g=9.81)
 
 
 def describe(results: Results) -> Iterator[str]:

@@ -8,7 +8,7 @@ from rich.table import Table
 
 from benchmarks.peers import CALLS, PEERS, Poses, capytaine
 from benchmarks.rows import Row, describe_time
-from benchmarks.timing import ATTITUDES, median_time
+from benchmarks.timing import ATTITUDES, time_calls
 from buoyancy_mj import RegularWave, Simulation, TriMesh, Water, read_scene, submerge
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.submersion import exact
@@ -68,19 +68,17 @@ def _measure_solid(solid: trimesh.Trimesh, quick: bool) -> Times:
     ]
     poses = Poses(solid, positions, ATTITUDES)
 
-    times = {
-        "triangles": float(len(solid.faces)),
-        "still": median_time(lambda i: submerge(mesh, positions[i], ATTITUDES[i]), quick),
-        "waves": median_time(
-            lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3), quick
-        ),
-        "trimesh": median_time(poses.by_trimesh, quick),
-        "scipy hull": median_time(poses.by_scipy, quick),
-        "manifold3d": median_time(poses.by_manifold, quick),
+    calls = {
+        "still": lambda i: submerge(mesh, positions[i], ATTITUDES[i]),
+        "waves": lambda i: submerge(mesh, positions[i], ATTITUDES[i], wave, 0.3),
+        "trimesh": poses.by_trimesh,
+        "scipy hull": poses.by_scipy,
+        "manifold3d": poses.by_manifold,
     }
     if capytaine is not None and len(solid.faces) < 100_000:
-        fewest = 1 if len(solid.faces) > 10_000 else 3
-        times["Capytaine"] = median_time(poses.by_capytaine, quick, fewest)
+        calls["Capytaine"] = poses.by_capytaine
+    slow = {"Capytaine": 1 if len(solid.faces) > 10_000 else 3}
+    times = {"triangles": float(len(solid.faces))} | time_calls(calls, quick, slow)
     times["bytes per triangle"] = _bytes(mesh) / len(solid.faces)
     return times
 
@@ -103,7 +101,7 @@ def exponent(rows: list[Times], column: str) -> float:
 
 def describe(results: Results) -> Iterator[Table | str]:
     """Describe all meshes in a table, and the exponents of each shape."""
-    table = Table(title="one submersion, median; factors are against still water")
+    table = Table(title="one submersion, processor time; factors are against still water")
     for column in ("mesh", "triangles", "still water", "waves", *PEERS, "bytes per triangle"):
         table.add_column(column, justify="right")
     for shape, rows in results.items():
@@ -146,8 +144,7 @@ def rows(results: Results) -> Iterator[Row]:
     for surface, name in (("still", "on still water"), ("waves", "in a wave")):
         exponents = [exponent(list(sizes.values()), surface) for sizes in results.values()]
         if np.isfinite(exponents).all():
-            text = f"n^{min(exponents):.2f} to n^{max(exponents):.2f}"
-            yield Row(f"growth of time with triangles, {name}, over four shapes", text)
+            span = " to ".join(dict.fromkeys(f"n^{f(exponents):.2f}" for f in (min, max)))
+            yield Row(f"growth of time with triangles, {name}", span)
     sizes = [row["bytes per triangle"] for sizes in results.values() for row in sizes.values()]
-    large = [size for size in sizes if size]
-    yield Row("memory of a mesh and its tree", f"{min(large):.0f} to {max(large):.0f} B a triangle")
+    yield Row("memory of a mesh and its tree", f"{min(sizes):.0f} to {max(sizes):.0f} B a triangle")

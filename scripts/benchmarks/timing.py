@@ -1,9 +1,9 @@
 """How calls are timed."""
 
 import itertools
-import statistics
+import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from scipy.spatial.transform import Rotation
 
@@ -11,8 +11,11 @@ ATTITUDES = [Rotation.random(random_state=i).as_matrix() for i in range(5)]
 """Rotations (3, 3) in which bodies are measured, one after the other."""
 SHORT = 1e-3
 """Calls that are shorter [s] are timed several at once: looking at the clock takes a while."""
-AT_ONCE = 4 * len(ATTITUDES)
-"""How many."""
+AT_ONCE = 4
+"""How often in each attitude."""
+
+Call = Callable[[int], object]
+"""Something that is timed; it takes the index of one of the `ATTITUDES`."""
 
 
 def least_duration(quick: bool) -> float:
@@ -20,28 +23,71 @@ def least_duration(quick: bool) -> float:
     return 0.0 if quick else 0.5
 
 
-def median_time(call: Callable[[int], object], quick: bool, fewest: int = 5) -> float:
-    """Median processor time of one call [s], after one that warms.
+def time_calls(
+    calls: Mapping[str, Call], quick: bool, fewest: Mapping[str, int] | None = None
+) -> dict[str, float]:
+    """Processor time of each call [s], mean over attitudes, of each the least one.
+
+    Calls take turns, so that all see the same machine. Each is made once before, to warm.
 
     Args:
-        call: takes the index of one of the `ATTITUDES`.
-        quick: measure as few calls as may be.
-        fewest: number of repeats otherwise, at least.
+        calls: the calls, by name.
+        quick: measure long calls once.
+        fewest: how often a long call is measured otherwise, at least; by default once in each
+            attitude.
     """
-    started = time.perf_counter()
-    call(0)
-    call(0)
-    count = AT_ONCE if time.perf_counter() - started < 2.0 * SHORT else 1
-    attitudes = itertools.cycle(range(len(ATTITUDES)))
+    fewest = dict.fromkeys(calls, 1) if quick else fewest or {}
+    series = {name: _Series(call, fewest.get(name)) for name, call in calls.items()}
     least = least_duration(quick)
-    fewest = 1 if quick else fewest
-    times: list[float] = []
-    while count * sum(times) < least or len(times) < fewest:
+    waiting = list(series)
+    while waiting:
+        for name in waiting:
+            series[name].measure()
+        waiting = [
+            name
+            for name in waiting
+            if series[name].count < series[name].fewest or series[name].spent < least
+        ]
+    return {name: one.mean for name, one in series.items()}
+
+
+class _Series:
+    """Measurements of one call."""
+
+    def __init__(self, call: Call, fewest: int | None) -> None:
+        call(0)
+        started = time.perf_counter()
+        call(0)
+        self._call = call
+        self._is_short = time.perf_counter() - started < SHORT
+        self._least: dict[int, float] = {}
+        self.fewest = len(ATTITUDES) if fewest is None or self._is_short else fewest
+        self.count = 0
+        self.spent = 0.0
+
+    def measure(self) -> None:
+        """Measure it once more: all attitudes together if it is short, else the next one."""
+        attitudes = range(len(ATTITUDES))
+        if self._is_short:
+            # the last one that was measured has left the caches in its own state
+            for i in attitudes:
+                self._call(i)
+            key, indices = 0, [*attitudes] * AT_ONCE
+        else:
+            key = self.count % len(ATTITUDES)
+            indices = [key]
         started = time.process_time()
-        for _ in range(count):
-            call(next(attitudes))
-        times.append((time.process_time() - started) / count)
-    return statistics.median(times)
+        for i in indices:
+            self._call(i)
+        spent = time.process_time() - started
+        self._least[key] = min(self._least.get(key, math.inf), spent / len(indices))
+        self.count += 1
+        self.spent += spent
+
+    @property
+    def mean(self) -> float:
+        """Mean over attitudes of the least time [s]."""
+        return sum(self._least.values()) / len(self._least)
 
 
 def _measure_clock() -> float:
