@@ -74,6 +74,8 @@ def _list_rows(runs: Sequence[Run], rows: Rows, *, only_first: bool) -> Iterator
 def _list_profile(runs: Sequence[Run]) -> Iterator[str]:
     """Where a step goes, in per cent, on the first machine on which that was measured."""
     results = next((run.results["profile"] for run in runs if "profile" in run.results), {})
+    if not results:
+        return
     columns = profile.list_columns(results)
     yield _line(["scene", "step", *columns, "together"])
     yield _line(["---", *["---:"] * (len(columns) + 2)])

@@ -1,5 +1,6 @@
 """The picture: time of a submersion against triangles, and where a step goes."""
 
+import textwrap
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +58,10 @@ def _draw_profile(axes: Any, results: profile.Results) -> None:
         )
         axes.barh(range(len(scenes)), shares, left=starts, label=part)
         starts += shares
-    labels = [f"{scene}\n{describe_time(results[scene][profile.STEP])}" for scene in scenes]
+    labels = [
+        f"{textwrap.fill(scene, 28)}\n{describe_time(results[scene][profile.STEP])}"
+        for scene in scenes
+    ]
     axes.set_yticks(range(len(scenes)), labels, fontsize=8)
-    axes.set(xlabel="part of a step [%]", title="where a step goes", xlim=(0.0, 110.0))
+    axes.set(xlabel="part of a step [%]", title="where a step goes")
     axes.legend(fontsize=8, ncols=4, loc="upper center", bbox_to_anchor=(0.4, -0.14))
