@@ -15,8 +15,8 @@ AGAIN = 2
 """How often what seems slower is measured again."""
 GAINS = ("batch/*", "real_time/*", "fleet/*")
 """Values of which more is better, by the patterns of their names; of all others less is."""
-LEFT_OUT = ("*triangles", "profile/*", "memory/steps")
-"""Values that are no measurements, and small differences of large ones."""
+LEFT_OUT = ("*triangles", "profile/*", "caches/*", "memory/steps")
+"""Values that are no measurements, small differences of large ones, and what tells of the machine."""
 
 
 class Change(NamedTuple):
@@ -91,6 +91,7 @@ def describe_changes(changes: list[Change]) -> Iterator[str]:
         yield (
             f"{len(changes) - apart} of {len(changes)} values are within {TOLERATED:.0%}; "
             f"the middle one is {middle:.2f} x as slow"
+            + (", so the machine may be busier than it was" if middle > 1.0 + TOLERATED else "")
         )
 
 
