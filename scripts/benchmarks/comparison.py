@@ -16,7 +16,7 @@ AGAIN = 2
 GAINS = ("batch/*", "real_time/*", "fleet/*")
 """Values of which more is better, by the patterns of their names; of all others less is."""
 LEFT_OUT = ("*triangles", "profile/*", "caches/*", "memory/steps")
-"""Values that are no measurements, small differences of large ones, and what tells of the machine."""
+"""Values that are no measurements, small differences of large ones, and what the machine does."""
 
 
 class Change(NamedTuple):
