@@ -15,7 +15,7 @@ AGAIN = 2
 """How often what seems slower is measured again."""
 GAINS = ("batch/*", "real_time/*", "fleet/*")
 """Values of which more is better, by the patterns of their names; of all others less is."""
-LEFT_OUT = ("*triangles", "*vessels", "profile/*", "caches/*", "memory/steps")
+LEFT_OUT = ("*triangles", "profile/*", "caches/*", "memory/steps")
 """Values that are no measurements, small differences of large ones, and what the machine does."""
 
 
