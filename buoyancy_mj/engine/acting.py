@@ -152,6 +152,7 @@ class ActingWater:
             self.lock,
             lambda: (measure() or _measure_nothing)(),
             self._table,
+            self._settings.threads,
         )
 
     @property

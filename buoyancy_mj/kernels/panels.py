@@ -43,6 +43,8 @@ def add_panels(
     active,  # (neq,) whether each equality constraint acts
     wet,  # (h, 8) submersion of the hulls
     out,  # (nbody, 6)
+    first,  # of the welded groups, and behind them of the rows of `damping`; and one past the last
+    last,
 ):
     """Add the drag of each wet triangle: pressure across it, and skin friction along it.
 
@@ -53,10 +55,11 @@ def add_panels(
     the motion there is. Bodies that welds hold together are one body here.
     """
     f, welded = np.empty(6), damping.welded
-    for g in range(welded.linear.shape[0]):
+    groups = welded.linear.shape[0]
+    for g in range(first, min(last, groups)):
         if holds(welded, g, active):
             _add_group(damping, g, hulls, owners, bodies, geoms, sea, time, timestep, wet, out)
-    for n in range(damping.bodies.shape[0]):
+    for n in range(max(first - groups, 0), last - groups):
         if damping.group[n] >= 0 and holds(welded, damping.group[n], active):
             continue
         length = damping.panels[n, LENGTH]
@@ -116,7 +119,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
     velocity = rotate(bodies.xmat[b], v[0], v[1], v[2])
 
     # each hull of the body, in the flow at its own centroid
-    for h in range(owners.shape[0]):
+    for h in damping.hulls[damping.hull_starts[n] : damping.hull_starts[n + 1]]:
         if owners[h] != b or not wet[h, VOLUME] > 0.0:
             continue
         x, y, z = triple(wet, h, CX)
@@ -133,6 +136,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
         _add_hull(
             damping.panels[n],
             damping.exposed,
+            damping.shifts[h],
             company,
             hulls,
             h,
@@ -151,8 +155,9 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _add_hull(
-    panels, exposed, company, hulls, h, bodies, b, geoms, sea, time, water, velocity, friction, f
-):
+    panels, exposed, shift, company, hulls, h, bodies, b, geoms, sea, time, water, velocity,
+    friction, f,
+):  # fmt: skip
     """Add force and torque on the wet triangles of a hull to `f` (6,).
 
     The torque is about the centre of mass of the body.
@@ -171,7 +176,7 @@ def _add_hull(
         dp = sea.level + eta + gx * (px - x) + gy * (py - y) - pz
         dq = sea.level + eta + gx * (qx - x) + gy * (qy - y) - qz
         do = sea.level + eta + gx * (ox - x) + gy * (oy - y) - oz
-        part = _wet_share(dp, dq, do) * exposed[t, company]
+        part = _wet_share(dp, dq, do) * exposed[t + shift, company]
         nx, ny, nz = rotate(r, areas[t, 0], areas[t, 1], areas[t, 2])
         size = math.sqrt(nx * nx + ny * ny + nz * nz)
         if part == 0.0 or size == 0.0:

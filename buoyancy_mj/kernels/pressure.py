@@ -57,8 +57,10 @@ def press_hulls(
     time,  # [s]
     scratch,  # `scratch.PressureScratch`
     out,  # (h, 6)
+    first,  # hull, and one past the last
+    last,
 ):
-    """Write the pressure of the water, integrated over the wet side of each hull, to `out`.
+    """Write the pressure of the water, integrated over the wet side of hulls, to `out`.
 
     That is a force over rho g [m^3], and a torque about the origin of the hull's frame over rho g
     [m^4], in the world's axes.
@@ -72,7 +74,7 @@ def press_hulls(
     # triangles in the world, nodes in the frame; both about its origin
     sums, turned = scratch.sums, scratch.turned
     dynamic = sea.pressure == PressureModel.froude_krylov
-    for h in range(frames.shape[0]):
+    for h in range(first, last):
         origin, r = positions[frames[h]], rotations[frames[h]]
         out[h, :] = 0.0
         dry, curvature = _gather(level, waves, wholes, h, origin, r, time, dynamic, near)
@@ -82,7 +84,8 @@ def press_hulls(
         sums[:], turned[:] = 0.0, 0.0
         # int64: a literal 0 would have all that it is given to compiled twice
         count = many = int64(0)
-        i, end = nodes[h], nodes[h + 1]
+        i = nodes[h]
+        end = spans[i, tree.BEHIND]
         while i < end:
             b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
             e0, e1, e2 = triple(boxes, i, tree.HALF)

@@ -22,8 +22,10 @@ _POINTS = 4
 
 def measure_exposure(
     packed: Hulls, hulls: Sequence[Hull], groups: Sequence[WeldedGroup]
-) -> NDArray[np.float64]:
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """The part of each face that meets water (f, 2), see `DampingArrays.exposed`.
+
+    With it comes how far behind the row of a face that of each hull stands (h,).
 
     A face is looked at in points, so the part of one that is covered in part is an estimate.
 
@@ -33,7 +35,8 @@ def measure_exposure(
         groups: which bodies welds hold together.
     """
     # the hulls that move together, in one frame
-    exposed = np.ones((len(packed.faces), 2))
+    exposed = [np.ones((len(packed.faces), 2))]
+    shifts, end = np.zeros(len(hulls), np.int64), len(packed.faces)
     places: Mapping[int, Place] = {
         b: place for group in groups for b, place in group.places.items()
     }
@@ -46,9 +49,14 @@ def measure_exposure(
             for shape in shapes:
                 others = [other for other in shapes if other is not shape]
                 alone = [other for other in others if other.body == shape.body]
-                exposed[shape.faces_of, ALONE] = shape.exposure(alone)
-                exposed[shape.faces_of, TOGETHER] = shape.exposure(others)
-    return exposed
+                rows = np.empty((len(shape.faces), 2))
+                rows[:, ALONE], rows[:, TOGETHER] = shape.exposure(alone), shape.exposure(others)
+                # the faces may be those of others too
+                if (rows != 1.0).any():
+                    exposed.append(rows)
+                    shifts[shape.index] = end - shape.first_face
+                    end += len(rows)
+    return np.concatenate(exposed), shifts
 
 
 class _Shape:
@@ -57,11 +65,11 @@ class _Shape:
     def __init__(self, packed: Hulls, index: int, hull: Hull, place: Place | None) -> None:
         node = packed.nodes[index]
         first, end = packed.spans[node, [tree.FIRST_FACE, tree.END_FACE]]
-        self.faces_of = slice(int(first), int(end))
+        self.index, self.first_face = index, int(first)
         self.body = hull.body
         in_body = Place(hull.body_from_geom, hull.position)
         turn, origin = place.after(in_body) if place else in_body
-        used, self.faces = np.unique(packed.faces[self.faces_of], return_inverse=True)
+        used, self.faces = np.unique(packed.faces[first:end], return_inverse=True)
         self.faces = self.faces.reshape(-1, 3).astype(np.int64)
         self.vertices = packed.vertices[used] @ turn.T + origin
         self.bounds = np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])

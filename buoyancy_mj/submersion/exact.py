@@ -118,7 +118,17 @@ class PackedHulls:
         """Submerge all hulls at a time [s]; return `results`, see `methods.Packed`."""
         geoms = Geoms(positions, rotations)
         sea, scratch = self._sea, self.scratch.cut
-        clip.submerge_hulls(self.hulls, geoms, sea.level, sea.waves, time, scratch, self.results)
+        clip.submerge_hulls(
+            self.hulls,
+            geoms,
+            sea.level,
+            sea.waves,
+            time,
+            scratch,
+            self.results,
+            0,
+            len(self.results),
+        )
         return self.results
 
     def press(
@@ -139,6 +149,8 @@ class PackedHulls:
             time,
             self.scratch.pressure,
             rows,
+            0,
+            len(rows),
         )
         return rows
 
@@ -180,6 +192,13 @@ def _hulls(
     waves: NDArray[np.float64],
 ) -> Hulls:
     """Meshes and their trees, joined, for waves (w, 7); see `PackedHulls` for the arguments."""
+    # one of each, whatever the number of hulls that share it
+    keys = [(id(tree), fill) for tree, fill in zip(trees, fills, strict=True)]
+    first_of = {key: h for h, key in reversed(list(enumerate(keys)))}
+    kept = sorted(first_of.values())
+    place_of = {keys[h]: place for place, h in enumerate(kept)}
+    trees, parts = [trees[h] for h in kept], fills[kept]
+
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
     first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
     first_node = np.cumsum([0, *(len(t.spans) for t in trees)])
@@ -193,16 +212,16 @@ def _hulls(
     # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area
     # itself stays
     moments = np.concatenate([t.moments for t in trees])
-    moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
+    moments[:, : tree.AREA] *= np.repeat(parts, np.diff(first_node))[:, None]
     a, b, c = vertices[faces.T]
     vectors = 0.5 * np.cross(b - a, c - a)
-    shares = np.repeat(fills, np.diff(first_face))[:, None]
+    shares = np.repeat(parts, np.diff(first_face))[:, None]
 
     return Hulls(
         vertices,
         faces,
         np.column_stack([shares * vectors, np.linalg.norm(vectors, axis=1)]),
-        first_node,
+        first_node[[place_of[key] for key in keys]],
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
