@@ -13,6 +13,7 @@ All values are medians or means over repeats:
 - vehicle: a step of a vehicle with its equipment against the same without;
 - sea: a sea of 64 waves against one wave;
 - batch: batches on one thread and on two;
+- fleet: 500 vessels in one model and one sea, on one thread and on two;
 - real_time: the real-time factor of `auv_waves`, headless and recorded;
 - first_step: the time from a fresh interpreter through the first step;
 - statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections.
@@ -24,7 +25,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from benchmarks import statics, steps, submersion, tree, vehicle
+from benchmarks import fleet, statics, steps, submersion, tree, vehicle
 from rich.console import Console
 from rich.table import Table
 
@@ -45,6 +46,7 @@ BENCHMARKS = {
     "vehicle": Benchmark(vehicle.measure, vehicle.describe),
     "sea": Benchmark(steps.measure_sea, steps.describe_sea),
     "batch": Benchmark(steps.measure_batch, steps.describe_batch),
+    "fleet": Benchmark(fleet.measure, fleet.describe),
     "real_time": Benchmark(steps.measure_real_time, steps.describe_real_time),
     "first_step": Benchmark(steps.measure_first_step, steps.describe_first_step),
     "statics": Benchmark(statics.measure, statics.describe),

@@ -62,7 +62,8 @@ class Settings:
     """Which geoms displace water, and as what."""
     threads: int = 1
     """How many threads share the hulls and bodies of one pass, where the water acts as compiled
-    code: for one model of many vessels. The results have the same bits for any number."""
+    code: for one model of many vessels. The results have the same bits for any number. The process
+    has one crew of helpers: while they help one of several data, the others do without."""
 
     def __post_init__(self) -> None:
         # kinds of values

@@ -1,4 +1,7 @@
-"""Many vessels in one sea: how fast they are stepped in one model, on one thread and on several."""
+"""Many vessels in one model and one sea: steps on one thread and on two, and without water."""
+
+import time
+from collections.abc import Iterator
 
 import mujoco
 import numpy as np
@@ -8,15 +11,62 @@ from numpy.typing import NDArray
 from buoyancy_mj import JonswapSea, Settings, Water, add_water
 
 Results = dict[str, dict[str, float]]
-"""Values by number of threads, and of the engine alone."""
-VESSELS, WAVES = 500, 260
-"""Vessels of the fleet, and components of its sea."""
+"""Times of a step [s] by what is stepped, and by the clock; and what the fleet is."""
+VESSELS, QUICK, WAVES = 500, 12, 260
+"""Vessels of the fleet, and of a quick one; components of its sea."""
+THREADS = (1, 2)
+"""Numbers of threads that share the vessels."""
+STEPS, ROUNDS = 5, 8
+"""Steps that are timed together, and how often."""
 TIMESTEP = 0.02
 """[s]."""
 BERTH = 15.0
 """Distance between vessels [m]."""
 DENSITY = 1025.0
 """Of the water [kg/m^3]."""
+_CLOCKS = {
+    "wall": time.perf_counter,
+    "caller": time.thread_time,
+    "process": time.process_time,
+}
+"""Clocks by name. The caller's own processor time is what a step takes where each thread has a
+processor to itself; all threads together take that of the process."""
+
+
+def measure(quick: bool) -> Results:
+    """Measure a step of the engine alone, and with water on some threads."""
+    vessels = QUICK if quick else VESSELS
+    models = {"engine": make_fleet(vessels, with_water=False)}
+    models |= {f"{threads} threads": make_fleet(vessels, threads) for threads in THREADS}
+    datas = {label: mujoco.MjData(model) for label, model in models.items()}
+    best = {label: dict.fromkeys(_CLOCKS, np.inf) for label in models}
+    # in turns, the best of each: others may be at work
+    for _ in range(2 if quick else ROUNDS):
+        for label, model in models.items():
+            started = {name: clock() for name, clock in _CLOCKS.items()}
+            mujoco.mj_step(model, datas[label], STEPS)
+            for name, clock in _CLOCKS.items():
+                best[label][name] = min(best[label][name], (clock() - started[name]) / STEPS)
+    triangles = float(models["engine"].nmeshface / vessels)
+    return {**best, "fleet": {"vessels": float(vessels), "triangles": triangles}}
+
+
+def describe(results: Results) -> Iterator[str]:
+    """Describe the engine's step in a line, and each number of threads in another."""
+    vessels, triangles = results["fleet"]["vessels"], results["fleet"]["triangles"]
+    yield (
+        f"{vessels:.0f} vessels of {triangles:.0f} triangles in a sea of {WAVES} waves, a step of "
+        f"{TIMESTEP} s: {results['engine']['process'] * 1e3:.3g} ms without water"
+    )
+    for threads in THREADS:
+        step = results[f"{threads} threads"]
+        yield (
+            f"with water on {threads} threads: {step['wall'] * 1e3:.3g} ms, of processor time "
+            f"{step['process'] * 1e3:.3g} ms, the caller's own {step['caller'] * 1e3:.3g} ms; "
+            f"{TIMESTEP / step['wall']:.2f} x real time, {vessels / step['wall']:,.0f} vessel "
+            f"steps/s; where each thread has a processor to itself "
+            f"{TIMESTEP / step['caller']:.2f} x and {vessels / step['caller']:,.0f}"
+        )
 
 
 def make_fleet(vessels: int, threads: int = 1, *, with_water: bool = True) -> mujoco.MjModel:
@@ -49,10 +99,13 @@ def _add_vessel(
     vertices = ball.vertices * [0.5 * length, 0.5 * breadth, depth]
     vertices[:, 2] = np.minimum(vertices[:, 2], 0.5 * depth)
     spec.add_mesh(
-        name=f"hull {n}", uservert=vertices.ravel(), userface=ball.faces.ravel(), inertia=_INERTIA
+        name=f"hull {n}",
+        uservert=vertices.ravel(),
+        userface=ball.faces.ravel(),
+        inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT,
     )
     heading = random.uniform(0.0, 2.0 * np.pi)
-    mass = DENSITY * np.pi / 3.0 * length * breadth * depth / 2.0
+    mass = DENSITY * np.pi / 6.0 * length * breadth * depth
     body = spec.worldbody.add_body(
         name=f"vessel {n}",
         pos=place,
@@ -64,6 +117,3 @@ def _add_vessel(
     )
     body.add_freejoint()
     body.add_geom(type=mujoco.mjtGeom.mjGEOM_MESH, meshname=f"hull {n}", contype=0, conaffinity=0)
-
-
-_INERTIA = mujoco.mjtMeshInertia.mjMESH_INERTIA_EXACT
