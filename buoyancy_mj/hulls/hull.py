@@ -57,8 +57,10 @@ class Hull:
 
 def group_by_body(hulls: Sequence[Hull]) -> dict[int, list[Hull]]:
     """The hulls of each body, by the index of the body, in the order of the model."""
-    bodies = sorted({hull.body for hull in hulls})
-    return {body: [hull for hull in hulls if hull.body == body] for body in bodies}
+    groups: dict[int, list[Hull]] = {body: [] for body in sorted({hull.body for hull in hulls})}
+    for hull in hulls:
+        groups[hull.body].append(hull)
+    return groups
 
 
 def combine_volumes(hulls: Sequence[Hull]) -> tuple[float, NDArray[np.float64]]:
