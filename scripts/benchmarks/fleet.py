@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from buoyancy_mj import JonswapSea, Settings, Water, add_water
 
 Results = dict[str, dict[str, float]]
-"""Steps of a vessel per second [1/s] by what is stepped, and by the clock; and what the fleet is."""
+"""Steps of a vessel per second [1/s], by what is stepped and by the clock; and the fleet."""
 VESSELS, QUICK, WAVES = 500, 12, 260
 """Vessels of the fleet, and of a quick one; components of its sea."""
 THREADS = (1, 2)
@@ -57,7 +57,8 @@ def describe(results: Results) -> Iterator[str]:
     vessels, triangles = results["fleet"]["vessels"], results["fleet"]["triangles"]
     yield (
         f"{vessels:.0f} vessels of {triangles:.0f} triangles in a sea of {WAVES} waves, at "
-        f"{1.0 / TIMESTEP:.0f} Hz: the engine alone steps {results['engine']['process']:,.0f} a second"
+        f"{1.0 / TIMESTEP:.0f} Hz: {results['engine']['process']:,.0f} vessel steps a second by the "
+        "engine alone"
     )
     real_time = vessels / TIMESTEP
     for threads in THREADS:
