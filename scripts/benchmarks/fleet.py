@@ -57,8 +57,8 @@ def describe(results: Results) -> Iterator[str]:
     vessels, triangles = results["fleet"]["vessels"], results["fleet"]["triangles"]
     yield (
         f"{vessels:.0f} vessels of {triangles:.0f} triangles in a sea of {WAVES} waves, at "
-        f"{1.0 / TIMESTEP:.0f} Hz: {results['engine']['process']:,.0f} vessel steps a second by the "
-        "engine alone"
+        f"{1.0 / TIMESTEP:.0f} Hz: {results['engine']['process']:,.0f} vessel steps a second by "
+        "the engine alone"
     )
     real_time = vessels / TIMESTEP
     for threads in THREADS:
