@@ -95,7 +95,7 @@ warnings.simplefilter("ignore")
 head, body = BODY.split("<worldbody>")
 two = body.replace("one", "two").replace("</worldbody></mujoco>", "")
 model = mujoco.MjModel.from_xml_string(f"{head}<worldbody>{two}{body}")
-hired = crews._crew().arrays.hired
+crew = crews.crew()
 
 def lifts():
     data = mujoco.MjData(model)
@@ -103,11 +103,11 @@ def lifts():
     return data.qvel.tobytes()
 
 with Buoyancy(model, threads=2).installed():
-    expected, before = lifts(), int(hired[0])
+    expected, before = lifts(), crew.count
     pid = os.fork()
     if pid == 0:
-        inherited = int(hired[0])
-        print(before, inherited, lifts() == expected, int(hired[0]), flush=True)
+        inherited = crew.count
+        print(before, inherited, lifts() == expected, crew.count, flush=True)
         os._exit(0)
     os.waitpid(pid, 0)
 """
@@ -209,10 +209,12 @@ def test_helpers_do_what_the_caller_is_too_busy_for():
         done.append((words[5:], threading.get_ident()))
         return 0
 
-    links = Links(*np.zeros(len(Links._fields), np.int64))._replace(crew=crews.address(), threads=3)
+    links = Links(*np.zeros(len(Links._fields), np.int64))._replace(
+        crew=crews.crew().table.address, threads=3
+    )
     words = 1, 2, 3, water.address, 5
     # each of three pieces ends when all have begun
-    share_items(address_of(meet), words, 3, Links(*map(int, links)))
+    share_items(address_of(meet), words, 3, links)
     assert sorted(piece for piece, _ in done) == [(0, 1), (1, 2), (2, 3)]
     assert len({thread for _, thread in done}) == 3
 

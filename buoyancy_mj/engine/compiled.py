@@ -93,7 +93,7 @@ class CompiledWater:
             gravity_text=ctypes.addressof(self._text),
             factor=layout.symbol("mj_factorM"),
             project=layout.symbol("mj_projectConstraint"),
-            crew=crews.address() if threads > 1 else 0,
+            crew=crews.crew().table.address if threads > 1 else 0,
             threads=threads,
         )
 

@@ -27,30 +27,30 @@ NEXT = 1 << 32
 FUNCTION, MODEL, DATA, RECORD, WATER, ITEMS, SIZE, JOB = range(8)
 """Columns of `Crew.job`, and how many: the C function that does a piece, the first four words that
 it takes, the number of items, and that of a piece."""
-CREW, INDEX = 0, 1
-"""Columns of `Crew.posts`."""
+CREW, INDEX, POST = range(3)
+"""Words of what a helper is told, and how many: address of the table of the crew, and its index."""
 
 
 class Crew(NamedTuple):
     """Threads that help one caller at a time; they sleep on locks of Python's, without Python."""
 
-    turn: Annotated[Words, (1,)]
-    """The next piece of the job, times `NEXT`, and the number of its pieces."""
-    done: Annotated[Words, (1,)]
-    """How many of its pieces are done."""
-    taken: Annotated[Words, (1,)]
-    """1 while the crew helps somebody."""
+    turn: int
+    """Address of a word: the next piece of the job, times `NEXT`, and the number of its pieces."""
+    done: int
+    """Address of a word: how many of its pieces are done."""
+    taken: int
+    """Address of a word that is 1 while the crew helps somebody."""
+    asleep: int
+    """Address of `MOST` words that are 1 while a helper sleeps, or is about to."""
+    posts: int
+    """Address of what each helper is told, `POST` words each."""
     hired: Annotated[Words, (1,)]
     """How many helpers there are."""
     job: Annotated[Words, (JOB,)]
     """What is to be done, in columns `FUNCTION` to `SIZE`."""
-    asleep: Annotated[Words, (MOST,)]
-    """1 while a helper sleeps, or is about to."""
     locks: Annotated[Words, (MOST + 1,)]
     """Locks, held all the time, that wake a helper when they are released; the last one wakes the
     caller."""
-    posts: Annotated[Words, (MOST, 2)]
-    """What each helper is told: address of the table of the crew, and its index."""
     work: int
     """The C function `work`."""
     start: int
@@ -75,7 +75,7 @@ def share(function, words, items, links):
     if links.crew == 0 or pieces < 2:
         return call(function, (model, data, record, water, place, int64(0), items))
     crew = view(links.crew, Crew)
-    if exchange(crew.taken.ctypes.data, 1) != 0:
+    if exchange(crew.taken, 1) != 0:
         return call(function, (model, data, record, water, place, int64(0), items))
 
     # tell what the job is, open it, and wake helpers
@@ -83,27 +83,28 @@ def share(function, words, items, links):
     job = crew.job
     job[FUNCTION], job[MODEL], job[DATA], job[RECORD] = function, model, data, record
     job[WATER], job[ITEMS], job[SIZE] = water, items, size
-    exchange(crew.done.ctypes.data, 0)
-    exchange(crew.turn.ctypes.data, pieces)
+    exchange(crew.done, 0)
+    exchange(crew.turn, pieces)
     for i in range(min(links.threads - 1, crew.hired[0], pieces - 1)):
-        if exchange(crew.asleep.ctypes.data + 8 * i, 0) != 0:
+        if exchange(crew.asleep + 8 * i, 0) != 0:
             call(crew.release, (crew.locks[i],))
 
     # help, and wait for what others are doing
     if not _take_turns(crew, place):
         call(crew.acquire, (crew.locks[MOST], int64(1)))
-    exchange(crew.taken.ctypes.data, 0)
+    exchange(crew.taken, 0)
     return 0
 
 
 @njit(cache=True, error_model="numpy")
 def _hire(crew, wanted):
     """Start threads until there are as many helpers as wanted, or no thread can be started."""
-    hired, asleep = crew.hired, crew.asleep
+    hired = crew.hired
     while hired[0] < min(wanted, MOST):
         i = hired[0]
-        hired[0], asleep[i] = i + 1, 0
-        if call(crew.start, (crew.work, int64(crew.posts.ctypes.data) + 16 * i)) == -1:
+        hired[0] = i + 1
+        exchange(crew.asleep + 8 * i, 0)
+        if call(crew.start, (crew.work, crew.posts + 8 * POST * i)) == -1:
             hired[0] = i
             return
 
@@ -115,10 +116,10 @@ def _take_turns(crew, place):
     A helper has no `place` of its own, which is 0 then. Returns whether the piece that was done
     last of all was done here.
     """
-    job, turn, done = crew.job, crew.turn.ctypes.data, crew.done.ctypes.data
+    job = crew.job
     was_last = False
     while True:
-        taken = add_to_word(turn, NEXT)
+        taken = add_to_word(crew.turn, NEXT)
         piece, pieces = taken // NEXT, taken % NEXT
         if piece >= pieces:
             return was_last
@@ -129,7 +130,7 @@ def _take_turns(crew, place):
         if place == 0:
             exchange(view(at, Workplace).taken, 0)
         # from here on the water may be gone
-        was_last = add_to_word(done, 1) == pieces - 1
+        was_last = add_to_word(crew.done, 1) == pieces - 1
 
 
 @njit(cache=True, error_model="numpy")
@@ -145,13 +146,13 @@ def take_workplace(water):
 def work(post: int64) -> void:
     """What a helper does: the pieces of jobs, and sleep in between."""
     crew, i = view(word(post + 8 * CREW), Crew), word(post + 8 * INDEX)
-    asleep = crew.asleep.ctypes.data + 8 * i
+    asleep = crew.asleep + 8 * i
     while crew.hired[0] > i:
         if _take_turns(crew, int64(0)):
             call(crew.release, (crew.locks[MOST],))
         exchange(asleep, 1)
         # a job may have come before the caller could see that
-        taken = add_to_word(crew.turn.ctypes.data, 0)
+        taken = add_to_word(crew.turn, 0)
         if taken // NEXT < taken % NEXT and exchange(asleep, 0) != 0:
             continue
         call(crew.acquire, (crew.locks[i], int64(1)))
