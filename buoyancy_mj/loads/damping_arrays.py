@@ -98,7 +98,7 @@ def resolve_damping(
     panels = np.stack([drag.panels for drag in viscous])
     exposed, shifts = np.zeros((0, 2)), np.zeros(0, np.int64)
     if panels.any() and packed is not None:
-        exposed, shifts = measure_exposure(packed, hulls, groups)
+        exposed, _, shifts = measure_exposure(packed, hulls, groups)
     group_of = {body: i for i, group in enumerate(groups) for body in group.places}
     own_hulls, hull_starts = join_hulls(hulls, bodies)
     all_members, member_starts = join(members)

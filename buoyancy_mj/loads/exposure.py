@@ -1,6 +1,7 @@
 """Which faces of hulls meet water, and which lie against or within another hull."""
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +21,22 @@ _POINTS = 4
 """Points along each side of a face, at which it is looked at."""
 
 
+class Exposure(NamedTuple):
+    """The part of each face that meets water."""
+
+    parts: NDArray[np.float64]
+    """Of each face, alone and together (e, 2), see `kernels.panels`: in the order of the faces, and
+    behind them those of hulls that share their faces with others."""
+    faces: NDArray[np.int64]
+    """Which face each of them is (e,)."""
+    shifts: NDArray[np.int64]
+    """How far behind the row of a face that of each hull stands (h,)."""
+
+
 def measure_exposure(
     packed: Hulls, hulls: Sequence[Hull], groups: Sequence[WeldedGroup]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The part of each face that meets water (f, 2), see `DampingArrays.exposed`.
-
-    With it comes how far behind the row of a face that of each hull stands (h,).
+) -> Exposure:
+    """Find the part of each face that meets water.
 
     A face is looked at in points, so the part of one that is covered in part is an estimate.
 
@@ -36,6 +47,7 @@ def measure_exposure(
     """
     # the hulls that move together, in one frame
     exposed = [np.ones((len(packed.faces), 2))]
+    faces = [np.arange(len(packed.faces))]
     shifts, end = np.zeros(len(hulls), np.int64), len(packed.faces)
     places: Mapping[int, Place] = {
         b: place for group in groups for b, place in group.places.items()
@@ -54,9 +66,10 @@ def measure_exposure(
                 # the faces may be those of others too
                 if (rows != 1.0).any():
                     exposed.append(rows)
+                    faces.append(shape.first_face + np.arange(len(rows)))
                     shifts[shape.index] = end - shape.first_face
                     end += len(rows)
-    return np.concatenate(exposed), shifts
+    return Exposure(np.concatenate(exposed), np.concatenate(faces), shifts)
 
 
 class _Shape:
