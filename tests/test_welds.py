@@ -291,8 +291,10 @@ def exposure_of(model):
         Water(),
     ).hulls
     groups = group_welded_bodies(model, sorted({hull.body for hull in hulls}))
-    exposed = measure_exposure(packed, hulls, groups) * packed.sizes[:, None]
-    return exposed.reshape(len(hulls), -1, 2).sum(axis=1)
+    exposure = measure_exposure(packed, hulls, groups)
+    exposed = exposure.parts * packed.sizes[exposure.faces, None]
+    spans = packed.spans[packed.nodes] + exposure.shifts[:, None]
+    return np.array([exposed[first:end].sum(axis=0) for first, end in spans[:, :2]])
 
 
 def test_faces_between_welded_halves_do_not_meet_water():

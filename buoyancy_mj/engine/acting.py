@@ -153,7 +153,13 @@ class ActingWater:
             self.lock,
             lambda: (measure() or _measure_nothing)(),
             self._table,
+            self.threads,
         )
+
+    @property
+    def threads(self) -> int:
+        """How many threads share a pass of compiled code."""
+        return self._settings.threads
 
     @property
     def handle(self) -> int:

@@ -58,7 +58,7 @@ class Buoyancy(ReadOnly):
             options.
         bodies: indices of the bodies whose geoms may displace; None for all.
         options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
-            slamming, selection.
+            slamming, selection, threads.
 
     Raises:
         WaterError: a wave that states another gravity than the model's.
@@ -191,8 +191,8 @@ class Buoyancy(ReadOnly):
         Raises:
             ModelError: the model disables actuation, or brings its own water; or, through
                 `xfrc_applied`, another water acts there, or a sensor would misread added mass.
-            EngineError: `native`, `through` or `copies` is asked for and cannot be; the message
-                says why.
+            EngineError: `native`, `through`, `copies` or several threads are asked for and cannot
+                be; the message says why.
         """
         if through == callbacks.APPLIED:
             check_applied(self.model, self.causes, augments=self._acting.load_model.augments)

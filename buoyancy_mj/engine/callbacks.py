@@ -279,6 +279,11 @@ def _try_compiled(
             raise EngineError(
                 f"copies of a model are known to compiled code alone: {error}"
             ) from error
+        if water.threads > 1:
+            raise EngineError(
+                f"threads is {water.threads}, and threads share the hulls in compiled code alone: "
+                f"{error}; or leave threads out"
+            ) from error
         return None
 
 

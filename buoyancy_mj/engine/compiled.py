@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine import layout
+from buoyancy_mj.engine import crews, layout
 from buoyancy_mj.engine.c_functions import PythonFunction, encode_text
 from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.errors import EngineError
@@ -21,7 +21,7 @@ from buoyancy_mj.kernels.entries.closures import compile_kernel
 from buoyancy_mj.kernels.entries.tables import Links, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import WORDS, Table, slot
 from buoyancy_mj.kernels.multibody import NO_GRAVITY, PGS, sum_sizes
-from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record
+from buoyancy_mj.kernels.passes import ALIVE, DATA, IDS, MODEL, WATER, Record, count_items
 from buoyancy_mj.kernels.paths import PATHS
 from buoyancy_mj.submersion.exact import PackedHulls
 
@@ -48,6 +48,7 @@ class CompiledWater:
         lock: threading.RLock,
         measure: Callable[[], None],
         handle: NDArray[np.int64],
+        threads: int = 1,
     ) -> None:
         """Gather it.
 
@@ -57,6 +58,7 @@ class CompiledWater:
             lock: held while hulls are submerged by Python code.
             measure: called when the model's geoms have other sizes than those of `load_model`.
             handle: a word (1,) that is set to the address of the water's table.
+            threads: how many share the hulls and bodies of a pass.
 
         Raises:
             EngineError: see `require_known_layout`.
@@ -87,10 +89,13 @@ class CompiledWater:
             act=compile_kernel(passive.act).address,
             submerge=self._submerge.address,
             augment=compile_kernel(loads.augment).address if load_model.augments else 0,
+            inertia=compile_kernel(loads.add_inertia).address if load_model.augments else 0,
             error=layout.symbol("mju_error"),
             gravity_text=ctypes.addressof(self._text),
             factor=layout.symbol("mj_factorM"),
             project=layout.symbol("mj_projectConstraint"),
+            crew=crews.crew().table.address if threads > 1 else 0,
+            threads=threads,
         )
 
         # where threads work, and what they leave
@@ -111,6 +116,10 @@ class CompiledWater:
                 acting=np.array(
                     [compile_kernel(loads.make_entry(load)).address for load in load_model.acting]
                 ),
+                items=np.array(
+                    [count_items(load, load_model.arrays) for load in load_model.acting]
+                ),
+                hulls=len(load_model.packed.volumes) if exact else 1,
                 offsets=self._offsets.ctypes.data,
                 pool=np.array([place.address for place in self._places]),
                 records=np.array([record.address for record in self._last]),

@@ -65,6 +65,7 @@ class LoadModel:
     def acting(self) -> tuple[Callable[..., None], ...]:
         """Those of `kernels.passes.LOADS` that act."""
         acts = {
+            passes.press_hulls: self.has_wave_pressure,
             passes.add_wave_pressure: self.has_wave_pressure,
             passes.add_drag: "drag" in self.causes,
             passes.add_panel_drag: len(self.arrays.damping.panels) > 0,

@@ -73,10 +73,11 @@ def evaluate(
     """
     record.wet[:] = load_model.packed.submerge(data.geom_xpos, data.geom_xmat, data.time, run)
     engine = _read_engine(model, data)
-    arrays = PassArrays(load_model.arrays, engine, gravity, load_model.scratch, record)
-    passes.begin(load_model.arrays, record)
+    loads, scratch = load_model.arrays, load_model.scratch
+    passes.begin(loads, record)
     for load in load_model.acting:
-        load(arrays)
+        items = passes.count_items(load, loads)
+        load(PassArrays(loads, engine, gravity, scratch, record, 0, items))
     passes.end(engine, record)
 
 

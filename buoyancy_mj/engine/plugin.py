@@ -56,7 +56,7 @@ def add_water(
             options.
         instance: name of the plugin's instance in the model.
         options: any of the other fields of `Settings`: method, pressure, damping, added_mass,
-            slamming, selection.
+            slamming, selection, threads.
 
     Raises:
         ModelError: the model has an instance of that name, or `spec` is no MjSpec.

@@ -3,11 +3,15 @@
 import dataclasses
 import functools
 from collections.abc import Sequence
+from weakref import WeakKeyDictionary, WeakValueDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.meshes.mesh import TriMesh
+
+_PLACED: WeakKeyDictionary[TriMesh, WeakValueDictionary[bytes, TriMesh]] = WeakKeyDictionary()
+"""Meshes in the frames of bodies, by the mesh and its pose there, as long as a hull has them."""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -42,14 +46,21 @@ class Hull:
 
     @functools.cached_property
     def mesh_in_body(self) -> TriMesh:
-        """The mesh in the frame of the body."""
-        return self.mesh.transformed(self.body_from_geom, self.position)
+        """The mesh in the frame of the body, one for all hulls that have it in the same pose."""
+        placed = _PLACED.setdefault(self.mesh, WeakValueDictionary())
+        pose = self.body_from_geom.tobytes() + self.position.tobytes()
+        mesh = placed.get(pose)
+        if mesh is None:
+            mesh = placed[pose] = self.mesh.transformed(self.body_from_geom, self.position)
+        return mesh
 
 
 def group_by_body(hulls: Sequence[Hull]) -> dict[int, list[Hull]]:
     """The hulls of each body, by the index of the body, in the order of the model."""
-    bodies = sorted({hull.body for hull in hulls})
-    return {body: [hull for hull in hulls if hull.body == body] for body in bodies}
+    groups: dict[int, list[Hull]] = {body: [] for body in sorted({hull.body for hull in hulls})}
+    for hull in hulls:
+        groups[hull.body].append(hull)
+    return groups
 
 
 def combine_volumes(hulls: Sequence[Hull]) -> tuple[float, NDArray[np.float64]]:

@@ -71,8 +71,10 @@ def submerge_hulls(
     time,  # [s]
     scratch,  # `scratch.CutScratch`
     out,  # (h, 8) volume, centroid (world; NaN when dry), wetted area, waterplane (NaN when none)
+    first,  # hull, and one past the last
+    last,
 ):
-    """Write the submersion of each hull to `out`.
+    """Write the submersion of hulls to their rows of `out`.
 
     Only hulls that the surface may cut cost more than a few operations.
     """
@@ -80,7 +82,7 @@ def submerge_hulls(
     layout, sea = hulls.tiles.layout, hulls.tiles.waves
     found, phases = scratch.store.found, scratch.store.phases
     positions, rotations = geoms.geom_xpos, geoms.geom_xmat
-    for h in range(frames.shape[0]):
+    for h in range(first, last):
         origin, r = positions[frames[h]], rotations[frames[h]]
 
         # how deep the middle of its box lies, and how much shallower or deeper any point of it can
@@ -172,7 +174,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
 
     # integrals over wet nodes, over triangles, and of e over the waterplane
     total, sums, extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), nothing(), (0.0, 0.0, 0.0, 0.0)
-    i, end = hulls.nodes[h], hulls.nodes[h + 1]
+    i = hulls.nodes[h]
+    end = spans[i, tree.BEHIND]
     while i < end:
         middle, half = triple(boxes, i, tree.MIDDLE), triple(boxes, i, tree.HALF)
         away = difference(middle, plane.middle)

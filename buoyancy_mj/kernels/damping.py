@@ -71,12 +71,19 @@ class DampingArrays(NamedTuple):
     """The bodies and all that is welded to each, one after the other."""
     member_starts: Annotated[Words, ("n + 1",)]
     """Where those of each body begin, and the end of all."""
+    hulls: Annotated[Words, ("k",)]
+    """Indices of the hulls of each body, one body after the other."""
+    hull_starts: Annotated[Words, ("n + 1",)]
+    """Where those of each body begin, and the end of all."""
     group: Annotated[Words, ("n",)]
     """Which of the welded groups each belongs to; -1 for none."""
     welded: WeldedGroups
     """The groups. While all its welds act, a group has the drag of one body, not of its members."""
     faces: Annotated[Doubles, (8, "f")]
-    """The faces of all hulls as `facets` takes them; none if no body has drag by panels."""
+    """The faces of all hulls as `facets` takes them; none if no body has drag by panels. In the
+    order of the faces, and behind them those of hulls that share their faces with others."""
+    shifts: Annotated[Words, ("h",)]
+    """How far behind a face that of each hull stands there."""
 
     @property
     def radiates(self) -> bool:
@@ -94,6 +101,8 @@ def add_drag(
     active,  # (neq,) whether each equality constraint acts
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     out,  # (nbody, 6)
+    first,  # of the welded groups, and behind them of the rows of `damping`; and one past the last
+    last,
 ):
     """Add linear and quadratic damping along each body's axes, scaled with its wet volume.
 
@@ -106,10 +115,11 @@ def add_drag(
     """
     water, v, m = np.empty(3), np.empty(6), np.empty(6)
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    for g in range(damping.welded.linear.shape[0]):
+    groups = damping.welded.linear.shape[0]
+    for g in range(first, min(last, groups)):
         if holds(damping.welded, g, active):
             _add_group(damping, g, bodies, sea, time, rate, centres, out)
-    for n in range(damping.bodies.shape[0]):
+    for n in range(max(first - groups, 0), last - groups):
         b = damping.bodies[n]
         volume = centres[b, VOLUME]
         if not volume > 0.0:

@@ -24,12 +24,36 @@ def augment(loads, engine, record):
         `UNCHANGED`, `AUGMENT` or `AUGMENT_DUAL`.
     """
     mass = engine.mass_matrix.M
-    if _is_augmented(mass, record):
+    if is_augmented(mass, record):
         return UNCHANGED
-    record.ids[AUGMENTED] = 0
-    wet = inertia.add_inertia(
-        loads.added_mass, engine.bodies, engine.joints, engine.mass_matrix, record.centres
+    bodies = loads.added_mass.bodies.shape[0]
+    add_inertia(loads, engine, record, 0, bodies)
+    return end_augmenting(loads, engine, record)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def add_inertia(loads, engine, record, first, last):
+    """Add the added mass of the rows from first up to last, see `inertia.add_inertia`."""
+    inertia.add_inertia(
+        loads.added_mass,
+        engine.bodies,
+        engine.joints,
+        engine.mass_matrix,
+        record.centres,
+        first,
+        last,
     )
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def end_augmenting(loads, engine, record):
+    """Add the water in tanks to a mass matrix that has all added mass, and note what it is then.
+
+    Returns what `augment` does.
+    """
+    mass = engine.mass_matrix.M
+    record.ids[AUGMENTED] = 0
+    wet = inertia.is_wet(loads.added_mass, record.centres)
     filled = ballast.add_inertia(
         loads.ballast,
         engine.commands.act,
@@ -48,7 +72,7 @@ def augment(loads, engine, record):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _is_augmented(mass, record):
+def is_augmented(mass, record):
     """Whether the mass matrix holds the added mass already.
 
     The engine may go over a pass again without computing its mass matrix anew.

@@ -18,15 +18,16 @@ class Hulls(NamedTuple):
     """All hulls of a model, each in its own frame, and the trees over their triangles."""
 
     vertices: Annotated[Doubles, ("v", 3)]
-    """Of all hulls [m]; leaf by leaf, so that leaves share none."""
+    """Of all meshes [m]; leaf by leaf, so that leaves share none."""
     faces: Annotated[Corners, ("f", 3)]
     """Indices into the vertices, in the order of the leaves."""
     areas: Annotated[Doubles, ("f", 3)]
     """Vector area of each face, times the part of its hull that displaces [m^2]."""
     sizes: Annotated[Doubles, ("f",)]
     """Area of each face [m^2]."""
-    nodes: Annotated[Words, ("h + 1",)]
-    """First node of each hull, and the end of all."""
+    nodes: Annotated[Words, ("h",)]
+    """First node of each hull, from which `tree.BEHIND` leads to its end. Hulls of one mesh that
+    displace in the same part share their nodes."""
     spans: Annotated[Words, ("n", 5)]
     """What lies under each node."""
     boxes: Annotated[Doubles, ("n", 6)]

@@ -46,21 +46,40 @@ def add_inertia(
     joints,  # `multibody.Joints`
     mass_matrix,  # `multibody.MassMatrix`, written
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
+    first,  # row of `added_mass`, and one past the last
+    last,
 ):
-    """Add J^T A J of each body to the mass matrix, scaled with the wet part of its volume.
+    """Add J^T A J of bodies to the mass matrix, scaled with the wet part of their volumes.
 
-    Returns whether any body was wet.
+    The bodies of one kinematic tree have elements in common. So those of a tree that begins before
+    the first row are left out, and those of one that begins before the last are all done.
     """
     p, g, half = np.empty((6, 6)), np.empty((6, 6)), np.empty((6, 6))
-    changed = False
-    for n in range(added_mass.bodies.shape[0]):
+    begin = _next_tree(added_mass.bodies, bodies.body_rootid, first)
+    end = _next_tree(added_mass.bodies, bodies.body_rootid, last)
+    for n in range(begin, end):
         b = added_mass.bodies[n]
         share = wet_share(centres, b, added_mass.volumes[n])
         if not share > 0.0:
             continue
-        changed = True
         add_matrix(added_mass.matrices[n], share, bodies, joints, b, p, half, g, mass_matrix)
-    return changed
+
+
+@njit(cache=True, error_model="numpy")
+def is_wet(added_mass, centres):
+    """Whether any body that has added mass is wet."""
+    for n in range(added_mass.bodies.shape[0]):
+        if wet_share(centres, added_mass.bodies[n], added_mass.volumes[n]) > 0.0:
+            return True
+    return False
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _next_tree(bodies, roots, n):
+    """The first row, from n on, whose body is of another tree than that of the row before."""
+    while 0 < n < bodies.shape[0] and roots[bodies[n]] == roots[bodies[n - 1]]:
+        n += 1
+    return n
 
 
 @njit(cache=True, error_model="numpy")

@@ -44,6 +44,8 @@ def add_panels(
     active,  # (neq,) whether each equality constraint acts
     wet,  # (h, 8) submersion of the hulls
     out,  # (nbody, 6)
+    first,  # of the welded groups, and behind them of the rows of `damping`; and one past the last
+    last,
 ):
     """Add the drag of each wet triangle: pressure across it, and skin friction along it.
 
@@ -54,10 +56,11 @@ def add_panels(
     the motion there is. Bodies that welds hold together are one body here.
     """
     f, welded = np.empty(6), damping.welded
-    for g in range(welded.linear.shape[0]):
+    groups = welded.linear.shape[0]
+    for g in range(first, min(last, groups)):
         if holds(welded, g, active):
             _add_group(damping, g, hulls, owners, bodies, geoms, sea, time, timestep, wet, out)
-    for n in range(damping.bodies.shape[0]):
+    for n in range(max(first - groups, 0), last - groups):
         if damping.group[n] >= 0 and holds(welded, damping.group[n], active):
             continue
         length = damping.panels[n, LENGTH]
@@ -118,7 +121,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
     velocity = rotate(bodies.xmat[b], v[0], v[1], v[2])
 
     # each hull of the body, in the flow at its own centroid
-    for h in range(owners.shape[0]):
+    for h in damping.hulls[damping.hull_starts[n] : damping.hull_starts[n + 1]]:
         if owners[h] != b or not wet[h, VOLUME] > 0.0:
             continue
         x, y, z = triple(wet, h, CX)
@@ -135,6 +138,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
         _add_hull(
             damping.panels[n],
             damping.faces,
+            damping.shifts[h],
             company,
             hulls,
             h,
@@ -156,6 +160,7 @@ def _sum_body(damping, n, company, length, hulls, owners, bodies, geoms, sea, ti
 def _add_hull(
     panels,
     faces,
+    shift,
     company,
     hulls,
     h,
@@ -189,7 +194,7 @@ def _add_hull(
     # the sum over the triangles, about the origin of the hull
     coefficients = panels[LEADING], panels[TRAILING], friction
     sums[:] = 0.0
-    _walk(hulls, h, faces, AREAS + company, plane, flow, coefficients, sums)
+    _walk(hulls, h, faces, shift, AREAS + company, plane, flow, coefficients, sums)
     fx, fy, fz, tx, ty, tz = total(sums)
 
     # in the world, about the centre of mass
@@ -205,7 +210,7 @@ def _add_hull(
 
 
 @njit(cache=True, error_model="numpy")
-def _walk(hulls, h, faces, row, plane, flow, coefficients, sums):
+def _walk(hulls, h, faces, shift, row, plane, flow, coefficients, sums):
     """Add the push on all wet faces of a hull to `sums`, by its tree.
 
     The corners of triangles are looked at where the plane cuts them, and nowhere else.
@@ -213,7 +218,8 @@ def _walk(hulls, h, faces, row, plane, flow, coefficients, sums):
     vertices, corners, spans, boxes = hulls.vertices, hulls.faces, hulls.spans, hulls.boxes
     wet_areas = np.empty(BLOCK)
     under, middle, slope = plane
-    i, end = hulls.nodes[h], hulls.nodes[h + 1]
+    i = hulls.nodes[h]
+    end = spans[i, tree.BEHIND]
     while i < end:
         away = difference(triple(boxes, i, tree.MIDDLE), middle)
         depth = under + slope[0] * away[0] + slope[1] * away[1] + slope[2] * away[2]
@@ -221,8 +227,8 @@ def _walk(hulls, h, faces, row, plane, flow, coefficients, sums):
         dry, wet = depth <= -spread, depth >= spread
         first, last = spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]
         if wet and not dry:
-            for start in range(first, last, BLOCK):
-                stop = min(start + BLOCK, last)
+            for start in range(first + shift, last + shift, BLOCK):
+                stop = min(start + BLOCK, last + shift)
                 add_push(faces, start, stop, faces[row, start:stop], flow, coefficients, sums)
         elif not dry and tree.is_leaf(spans, i):
             for start in range(first, last, BLOCK):
@@ -231,8 +237,11 @@ def _walk(hulls, h, faces, row, plane, flow, coefficients, sums):
                     p = _depth(vertices, corners[t, 0], plane)
                     q = _depth(vertices, corners[t, 1], plane)
                     o = _depth(vertices, corners[t, 2], plane)
-                    wet_areas[t - start] = _wet_share(p, q, o) * faces[row, t]
-                add_push(faces, start, stop, wet_areas[: stop - start], flow, coefficients, sums)
+                    wet_areas[t - start] = _wet_share(p, q, o) * faces[row, t + shift]
+                add_push(
+                    faces, start + shift, stop + shift, wet_areas[: stop - start],
+                    flow, coefficients, sums,
+                )  # fmt: skip
         i = tree.node_after(spans, i, dry or wet)
 
 

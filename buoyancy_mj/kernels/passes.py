@@ -4,9 +4,11 @@ Each load is one function. Python calls it as it is, and compiled code by the ad
 see `entries.loads`: what does not act is never compiled.
 
 To add a load: write its kernel, declare its arrays in a NamedTuple of `LoadArrays`, name it in
-`Causes`, and add a function of `PassArrays` to `LOADS`.
+`Causes`, and add a function of `PassArrays` to `LOADS`. Where it goes over hulls or bodies that
+touch no rows of each other, add how many there are to `DIVIDED`, so that threads may share it.
 """
 
+from collections.abc import Callable, Mapping
 from typing import Annotated, NamedTuple
 
 from buoyancy_mj.kernels import (
@@ -100,6 +102,10 @@ class PassArrays(NamedTuple):
     scratch: Scratch
     record: Record
     """`wet` and `centres` are of this pass."""
+    first: int
+    """First of the items to do, see `DIVIDED`."""
+    last: int
+    """One past the last of them."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -140,12 +146,25 @@ def add_buoyancy(arrays):
 
 
 @register_jitable()
+def press_hulls(arrays):
+    """The pressure under waves on each hull."""
+    loads, engine = arrays.loads, arrays.engine
+    pressure.press_hulls(
+        loads.hulls,
+        engine.geoms,
+        loads.sea,
+        engine.time,
+        arrays.scratch,
+        arrays.record.heads,
+        arrays.first,
+        arrays.last,
+    )
+
+
+@register_jitable()
 def add_wave_pressure(arrays):
     """What the pressure under waves adds to it."""
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
-    pressure.press_hulls(
-        loads.hulls, engine.geoms, loads.sea, engine.time, arrays.scratch, record.heads
-    )
     wrenches.add_wave_pressure(
         record.heads,
         record.wet,
@@ -171,6 +190,8 @@ def add_drag(arrays):
         engine.equalities.eq_active,
         record.centres,
         record.causes.drag,
+        arrays.first,
+        arrays.last,
     )
 
 
@@ -190,6 +211,8 @@ def add_panel_drag(arrays):
         engine.equalities.eq_active,
         record.wet,
         record.causes.drag,
+        arrays.first,
+        arrays.last,
     )
 
 
@@ -199,7 +222,6 @@ def add_radiation(arrays):
     loads, engine, record = arrays.loads, arrays.engine, arrays.record
     radiation.add_radiation(
         loads.damping,
-        loads.owners,
         engine.bodies,
         loads.sea,
         engine.time,
@@ -207,6 +229,8 @@ def add_radiation(arrays):
         record.wet,
         record.centres,
         record.causes.radiation,
+        arrays.first,
+        arrays.last,
     )
 
 
@@ -241,6 +265,8 @@ def add_reaction(arrays):
         record.centres,
         record.causes.added_mass,
         record.causes.slamming,
+        arrays.first,
+        arrays.last,
     )
 
 
@@ -266,6 +292,7 @@ def add_ballast(arrays):
 
 LOADS = (
     add_buoyancy,
+    press_hulls,
     add_wave_pressure,
     add_drag,
     add_panel_drag,
@@ -275,3 +302,17 @@ LOADS = (
     add_ballast,
 )
 """All loads, in the order in which they are added."""
+DIVIDED: Mapping[Callable[..., None], Callable[[LoadArrays], int]] = {
+    press_hulls: lambda loads: len(loads.hulls.frames),
+    add_drag: lambda loads: len(loads.damping.welded.linear) + len(loads.damping.bodies),
+    add_panel_drag: lambda loads: len(loads.damping.welded.linear) + len(loads.damping.bodies),
+    add_radiation: lambda loads: len(loads.damping.bodies),
+    add_reaction: lambda loads: len(loads.added_mass.bodies),
+}
+"""Loads whose items, hulls or bodies, may be done side by side: how many there are of them. All
+others are one item."""
+
+
+def count_items(load: Callable[..., None], loads: LoadArrays) -> int:
+    """How many items of a load may be done side by side."""
+    return DIVIDED[load](loads) if load in DIVIDED else 1

@@ -54,8 +54,10 @@ def press_hulls(
     time,  # [s]
     scratch,  # `scratch.Scratch`
     out,  # (h, 6)
+    first,  # hull, and one past the last
+    last,
 ):
-    """Write the pressure of the water, integrated over the wet side of each hull, to `out`.
+    """Write the pressure of the water, integrated over the wet side of hulls, to `out`.
 
     That is a force over rho g [m^3], and a torque about the origin of the hull's frame over rho g
     [m^4], in the world's axes.
@@ -67,7 +69,7 @@ def press_hulls(
     # triangles in the world, nodes in the frame; both about its origin
     sums, turned = scratch.pressure.sums, scratch.pressure.turned
     dynamic = sea.pressure == PressureModel.froude_krylov
-    for h in range(frames.shape[0]):
+    for h in range(first, last):
         origin, r = positions[frames[h]], rotations[frames[h]]
         out[h, :] = 0.0
 
@@ -110,7 +112,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     rough = 0.125 * curvature * hulls.whole[h, EDGE] ** 2 > allowed
     # int64: a literal 0 would have all that it is given to compiled twice
     count = int64(0)
-    i, end, wet_until = hulls.nodes[h], hulls.nodes[h + 1], int64(0)
+    i, wet_until = hulls.nodes[h], int64(0)
+    end = spans[i, tree.BEHIND]
     while i < end:
         b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
         e0, e1, e2 = triple(boxes, i, tree.HALF)

@@ -22,7 +22,6 @@ from buoyancy_mj.kernels.wrenches import add_wrench
 @njit(cache=True, error_model="numpy")
 def add_radiation(
     damping,
-    owners,  # (h,) body of each hull
     bodies,
     sea,
     time,
@@ -30,6 +29,8 @@ def add_radiation(
     wet,  # (h, 8) submersion of the hulls
     centres,
     out,
+    first,  # row of `damping`, and one past the last
+    last,
 ):
     """Add the damping of heave, roll and pitch by the waves that a body makes.
 
@@ -40,14 +41,13 @@ def add_radiation(
     """
     water, v, radiation = np.empty(3), np.empty(6), damping.radiation
     rate = 1.0 / timestep if timestep > 0.0 else math.inf
-    for n in range(damping.bodies.shape[0]):
+    for n in range(first, last):
         b = damping.bodies[n]
         if not centres[b, VOLUME] > 0.0 or not radiation[n, WATERPLANE] > 0.0:
             continue
         area = 0.0
-        for h in range(owners.shape[0]):
-            if owners[h] == b:
-                area += wet[h, WATERPLANE_AREA]
+        for h in damping.hulls[damping.hull_starts[n] : damping.hull_starts[n + 1]]:
+            area += wet[h, WATERPLANE_AREA]
         share = min(max(area / radiation[n, WATERPLANE], 0.0), 1.0)
         if share == 0.0:
             continue

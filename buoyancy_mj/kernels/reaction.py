@@ -40,6 +40,8 @@ def add_reaction(
     centres,  # (nbody, 4) submerged volume and its centroid, of each body
     out,  # (nbody, 6)
     slamming,  # (nbody, 6); no rows without slamming
+    first,  # row of `added_mass`, and one past the last
+    last,
 ):
     """Add the reaction about `xipos`, but for the part that goes with the joints' accelerations."""
     p, whole = np.empty((6, 6)), np.empty((6, 6))
@@ -47,7 +49,7 @@ def add_reaction(
     gradient, change, kept = np.empty(6), np.empty(6), np.empty(6)
     hulls, hull_starts = added_mass.hulls, added_mass.hull_starts
     members, member_starts = added_mass.members, added_mass.member_starts
-    for n in range(added_mass.bodies.shape[0]):
+    for n in range(first, last):
         b, matrix, volume = added_mass.bodies[n], added_mass.matrices[n], added_mass.volumes[n]
         share = wet_share(centres, b, volume)
         if not share > 0.0:

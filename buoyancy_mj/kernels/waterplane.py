@@ -46,7 +46,8 @@ def waterplanes(
         high_x = high_y = -math.inf
 
         # the triangles at the surface, by the tree over them
-        i, end = nodes[h], nodes[h + 1]
+        i = nodes[h]
+        end = hulls.spans[i, tree.BEHIND]
         while i < end:
             missed = _misses(boxes, i, r, still)
             if not missed and tree.is_leaf(spans, i):

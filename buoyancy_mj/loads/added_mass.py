@@ -17,6 +17,7 @@ from buoyancy_mj.kernels.inertia import AddedMass
 from buoyancy_mj.loads.added_mass_estimates import Estimate, estimate_added_mass
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
 from buoyancy_mj.loads.full_inertia import ESTIMATES, QUANTITY
+from buoyancy_mj.loads.groups import join, join_hulls
 from buoyancy_mj.loads.matrices import parse_matrix
 from buoyancy_mj.loads.plates import estimate_plate
 
@@ -83,9 +84,8 @@ def resolve_added_mass(
         )
     by_body = group_by_body(hulls)
     volumes = [sum(hull.displaced_volume for hull in by_body[body]) for body in bodies]
-    owners = np.array([hull.body for hull in hulls])
-    own_hulls, hull_starts = _join([np.flatnonzero(owners == body) for body in bodies])
-    members, member_starts = _join([np.flatnonzero(model.body_weldid == body) for body in bodies])
+    own_hulls, hull_starts = join_hulls(hulls, bodies)
+    members, member_starts = join([np.flatnonzero(model.body_weldid == body) for body in bodies])
     return AddedMass(
         bodies=np.array(bodies, np.int64),
         volumes=np.array(volumes, float),
@@ -96,12 +96,6 @@ def resolve_added_mass(
         member_starts=member_starts,
         slamming=int(slamming),
     )
-
-
-def _join(groups: Sequence[NDArray[np.int64]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Groups of indices one after the other, and where each begins, and the end of all."""
-    starts = np.cumsum([0, *(len(group) for group in groups)])
-    return np.concatenate([np.zeros(0, np.int64), *groups]).astype(np.int64), starts
 
 
 def find_estimates(

@@ -22,6 +22,7 @@ from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.panels import LENGTH
 from buoyancy_mj.loads.damping import Damping, Panels, Silhouette
 from buoyancy_mj.loads.exposure import gather_faces, measure_exposure
+from buoyancy_mj.loads.groups import join, join_hulls
 from buoyancy_mj.loads.matrices import check_eigenvalues
 from buoyancy_mj.loads.silhouettes import Silhouettes, estimate_drag, measure_silhouettes
 from buoyancy_mj.meshes.mesh import TriMesh
@@ -96,10 +97,13 @@ def resolve_damping(
     radiation = _resolve_radiation(damping, model, shapes)
     viscous, groups, of_groups = _resolve_viscous(damping, model, shapes, density)
     panels = np.stack([drag.panels for drag in viscous])
-    faces = np.zeros((FACE_ROWS, 0))
+    faces, shifts = np.zeros((FACE_ROWS, 0)), np.zeros(0, np.int64)
     if panels.any() and packed is not None:
-        faces = gather_faces(packed, measure_exposure(packed, hulls, groups))
+        exposure = measure_exposure(packed, hulls, groups)
+        faces, shifts = gather_faces(packed, exposure), exposure.shifts
     group_of = {body: i for i, group in enumerate(groups) for body in group.places}
+    own_hulls, hull_starts = join_hulls(hulls, bodies)
+    all_members, member_starts = join(members)
     return DampingArrays(
         bodies=np.array(bodies),
         volumes=np.array([shape.volume for shape in shapes.values()]),
@@ -112,11 +116,14 @@ def resolve_damping(
         radiation=radiation,
         panels=panels if panels.any() else panels[:0],
         owners=_list_owners(hulls, hulls if dragging is None else dragging),
-        members=np.concatenate(members).astype(np.int64),
-        member_starts=np.cumsum([0, *(len(group) for group in members)]),
+        members=all_members,
+        member_starts=member_starts,
+        hulls=own_hulls,
+        hull_starts=hull_starts,
         group=np.array([group_of.get(body, -1) for body in bodies]),
         welded=_arrange_groups(groups, bodies, of_groups),
         faces=faces,
+        shifts=shifts,
     )
 
 

@@ -1,6 +1,7 @@
 """Which faces of hulls meet water, and which lie against or within another hull."""
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +23,22 @@ _POINTS = 4
 """Points along each side of a face, at which it is looked at."""
 
 
+class Exposure(NamedTuple):
+    """The part of each face that meets water."""
+
+    parts: NDArray[np.float64]
+    """Of each face, alone and together (e, 2), see `kernels.panels`: in the order of the faces, and
+    behind them those of hulls that share their faces with others."""
+    faces: NDArray[np.int64]
+    """Which face each of them is (e,)."""
+    shifts: NDArray[np.int64]
+    """How far behind the row of a face that of each hull stands (h,)."""
+
+
 def measure_exposure(
     packed: Hulls, hulls: Sequence[Hull], groups: Sequence[WeldedGroup]
-) -> NDArray[np.float64]:
-    """The part of each face that meets water (f, 2), alone and together, see `kernels.panels`.
+) -> Exposure:
+    """Find the part of each face that meets water.
 
     A face is looked at in points, so the part of one that is covered in part is an estimate.
 
@@ -35,7 +48,9 @@ def measure_exposure(
         groups: which bodies welds hold together.
     """
     # the hulls that move together, in one frame
-    exposed = np.ones((len(packed.faces), 2))
+    exposed = [np.ones((len(packed.faces), 2))]
+    faces = [np.arange(len(packed.faces))]
+    shifts, end = np.zeros(len(hulls), np.int64), len(packed.faces)
     places: Mapping[int, Place] = {
         b: place for group in groups for b, place in group.places.items()
     }
@@ -48,24 +63,25 @@ def measure_exposure(
             for shape in shapes:
                 others = [other for other in shapes if other is not shape]
                 alone = [other for other in others if other.body == shape.body]
-                exposed[shape.faces_of, ALONE] = shape.exposure(alone)
-                exposed[shape.faces_of, TOGETHER] = shape.exposure(others)
-    return exposed
+                rows = np.empty((len(shape.faces), 2))
+                rows[:, ALONE], rows[:, TOGETHER] = shape.exposure(alone), shape.exposure(others)
+                # the faces may be those of others too
+                if (rows != 1.0).any():
+                    exposed.append(rows)
+                    faces.append(shape.first_face + np.arange(len(rows)))
+                    shifts[shape.index] = end - shape.first_face
+                    end += len(rows)
+    return Exposure(np.concatenate(exposed), np.concatenate(faces), shifts)
 
 
-def gather_faces(packed: Hulls, exposed: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The faces of all hulls (8, f) as `kernels.facets` takes them.
-
-    Args:
-        packed: the hulls as kernels read them.
-        exposed: the part of each face that meets water (f, 2), see `measure_exposure`.
-    """
+def gather_faces(packed: Hulls, exposure: Exposure) -> NDArray[np.float64]:
+    """The faces of all hulls (8, e) as `kernels.facets` takes them, in the order of `exposure`."""
     # of what displaces in part, faces count in part
-    vectors = packed.areas[:, :3]
+    vectors = packed.areas[exposure.faces]
     areas = np.linalg.norm(vectors, axis=1)
-    middles = packed.vertices[packed.faces].mean(axis=1)
+    middles = packed.vertices[packed.faces[exposure.faces]].mean(axis=1)
     normals = vectors / np.where(areas > 0.0, areas, 1.0)[:, None]
-    return np.vstack([middles.T, normals.T, areas * exposed.T])
+    return np.vstack([middles.T, normals.T, areas * exposure.parts.T])
 
 
 class _Shape:
@@ -74,11 +90,11 @@ class _Shape:
     def __init__(self, packed: Hulls, index: int, hull: Hull, place: Place | None) -> None:
         node = packed.nodes[index]
         first, end = packed.spans[node, [tree.FIRST_FACE, tree.END_FACE]]
-        self.faces_of = slice(int(first), int(end))
+        self.index, self.first_face = index, int(first)
         self.body = hull.body
         in_body = Place(hull.body_from_geom, hull.position)
         turn, origin = place.after(in_body) if place else in_body
-        used, self.faces = np.unique(packed.faces[self.faces_of], return_inverse=True)
+        used, self.faces = np.unique(packed.faces[first:end], return_inverse=True)
         self.faces = self.faces.reshape(-1, 3).astype(np.int64)
         self.vertices = packed.vertices[used] @ turn.T + origin
         self.bounds = np.stack([self.vertices.min(axis=0), self.vertices.max(axis=0)])

@@ -28,7 +28,7 @@ WATER = tuple(field.name for field in dataclasses.fields(Water))
 """Keys of the plugin that describe the sea: the fields of `Water`."""
 SELECTION = tuple(field.name for field in dataclasses.fields(Selection))
 """Keys that choose geoms: the fields of `Selection`."""
-KEYS = (*WATER, "method", "pressure", "damping", "added_mass", "slamming", *SELECTION)
+KEYS = (*WATER, "method", "pressure", "damping", "added_mass", "slamming", "threads", *SELECTION)
 """All keys of the plugin that hold settings."""
 INSTANCE = "instance"
 """Key that holds the name of the instance where `add_water` put it. If the model has another name
@@ -56,6 +56,7 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
     method = parse_table(words.get("method", "exact"), f"{where}: method")
     slamming = parse_value(words.get("slamming", "false"), f"{where}: slamming")
     damping = _parse_damping(words.get("damping", "true"), f"{where}: damping")
+    threads = parse_value(words.get("threads", "1"), f"{where}: threads")
     selection = {
         key: split_words(words[key], f"{where}: {key}") for key in SELECTION if key in words
     }
@@ -67,6 +68,7 @@ def parse_plugin_config(texts: Mapping[str, str], where: str) -> Settings:
         slamming=convert(slamming, bool, f"{where}: slamming"),
         damping=damping_from_table(damping, f"{where}: damping"),
         selection=selection_from_table(selection, where),
+        threads=convert(threads, int, f"{where}: threads"),
     )
 
 
@@ -99,6 +101,7 @@ def write_plugin_config(settings: Settings) -> dict[str, str]:
         "damping": _format_damping(settings.damping),
         "added_mass": settings.added_mass or "none",
         "slamming": format_value(settings.slamming),
+        "threads": str(settings.threads) if settings.threads > 1 else "",
         **{key: join_words(getattr(settings.selection, key) or ()) for key in SELECTION},
     }
     return {key: text for key, text in texts.items() if text}

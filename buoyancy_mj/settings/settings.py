@@ -13,10 +13,12 @@ from buoyancy_mj.loads.damping import Damping, Panels
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.exact import Exact
 from buoyancy_mj.submersion.methods import Method, parse_method
-from buoyancy_mj.values import read_truth
+from buoyancy_mj.values import read_truth, read_whole_number
 
 PRESSURES = ("archimedes", "hydrostatic", "froude-krylov")
 """Models of the pressure in waves."""
+MOST_THREADS = 64
+"""Threads that share one pass at most: the caller and `kernels.entries.crews.MOST` helpers."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -58,6 +60,10 @@ class Settings:
     of that is given back at once, and energy is kept."""
     selection: Selection = Selection()
     """Which geoms displace water, and as what."""
+    threads: int = 1
+    """How many threads share the hulls and bodies of one pass, where the water acts as compiled
+    code: for one model of many vessels. The results have the same bits for any number. The process
+    has one crew of helpers: while they help one of several data, the others do without."""
 
     def __post_init__(self) -> None:
         # kinds of values
@@ -77,6 +83,8 @@ class Settings:
             )
         check_source(self.added_mass)
         self._check_slamming()
+        threads = read_whole_number(ModelError, "threads", self.threads, least=1, most=MOST_THREADS)
+        object.__setattr__(self, "threads", threads)
 
         # names
         object.__setattr__(self, "method", parse_method(self.method))
@@ -92,6 +100,11 @@ class Settings:
             raise MethodError(
                 f"pressure '{self.pressure}' needs the method 'exact', not '{self.method.name}', "
                 "which knows volumes alone"
+            )
+        if self.threads > 1:
+            raise MethodError(
+                f"threads is {self.threads}, and hulls are shared by the method 'exact' alone, not "
+                f"by '{self.method.name}'; leave threads out"
             )
         if self.slamming:
             raise MethodError(
@@ -123,6 +136,7 @@ class Options(TypedDict, total=False):
     added_mass: str | Mapping[str, ArrayLike] | None
     slamming: bool
     selection: Selection
+    threads: int
 
 
 def combine_settings(water: Water | Settings | None, options: Options) -> Settings:

@@ -124,7 +124,9 @@ class PackedHulls:
         """Submerge all hulls at a time [s]; return `results`, see `methods.Packed`."""
         geoms = Geoms(positions, rotations)
         sea, scratch = self._sea, self.scratch.cut
-        clip.submerge_hulls(self.hulls, geoms, sea.level, time, scratch, self.results)
+        clip.submerge_hulls(
+            self.hulls, geoms, sea.level, time, scratch, self.results, 0, len(self.results)
+        )
         return self.results
 
     def press(
@@ -145,6 +147,8 @@ class PackedHulls:
             time,
             self.scratch,
             rows,
+            0,
+            len(rows),
         )
         return rows
 
@@ -190,6 +194,13 @@ def _hulls(
 
     Straight edges that lie in the surface may be off by so much [m], as is allowed for each hull.
     """
+    # one of each, whatever the number of hulls that share it
+    keys = [(id(tree), fill) for tree, fill in zip(trees, fills, strict=True)]
+    first_of = {key: h for h, key in reversed(list(enumerate(keys)))}
+    kept = sorted(first_of.values())
+    place_of = {keys[h]: place for place, h in enumerate(kept)}
+    of_hulls, trees, parts = trees, [trees[h] for h in kept], fills[kept]
+
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
     first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
     first_node = np.cumsum([0, *(len(t.spans) for t in trees)])
@@ -203,9 +214,9 @@ def _hulls(
     # volumes are linear in the vector areas, so what displaces in part has smaller ones; the area
     # itself stays
     moments = np.concatenate([t.moments for t in trees])
-    moments[:, : tree.AREA] *= np.repeat(fills, np.diff(first_node))[:, None]
+    moments[:, : tree.AREA] *= np.repeat(parts, np.diff(first_node))[:, None]
     vectors = np.concatenate([t.vectors for t in trees])
-    shares = np.repeat(fills, np.diff(first_face))[:, None]
+    shares = np.repeat(parts, np.diff(first_face))[:, None]
 
     radii = [0.5 * float(np.linalg.norm(mesh.extents)) for mesh in meshes]
     return Hulls(
@@ -213,11 +224,11 @@ def _hulls(
         faces,
         shares * vectors,
         np.linalg.norm(vectors, axis=1),
-        first_node,
+        first_node[[place_of[key] for key in keys]],
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
-        np.array([_whole(*each) for each in zip(meshes, trees, fills, allowed, strict=True)]),
+        np.array([_whole(*each) for each in zip(meshes, of_hulls, fills, allowed, strict=True)]),
         pressure.typical(waves),
         lay_tiles(waves, radii),
         lay_blocks(waves, radii),

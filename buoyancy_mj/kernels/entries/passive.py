@@ -9,6 +9,7 @@ from numba import int64, void
 
 from buoyancy_mj.kernels import delivery, passes
 from buoyancy_mj.kernels.compiling import inner, njit
+from buoyancy_mj.kernels.entries.crews import share, take_workplace
 from buoyancy_mj.kernels.entries.pointers import call, exchange, set_word, word
 from buoyancy_mj.kernels.entries.tables import Lease, WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
@@ -23,41 +24,32 @@ def _evaluate(model, data, water, place, record):
     Returns 0, or the address of a text that tells why it cannot.
     """
     table, results = view(water, WaterTable), view(record, Record)
-    loads, links, acting = table.loads, table.links, table.acting
+    loads, links, acting, items = table.loads, table.links, table.acting, table.items
     engine = view_engine(model, data, table.offsets, Engine)
     if math.isnan(downward_gravity(engine.option.gravity, engine.option.disableflags)):
         return links.gravity_text
 
     # what is wet, and what the water does to it
-    text = call(links.submerge, (model, data, record, water, place))
+    words = model, data, record, water, place
+    text = share(links.submerge, words, table.hulls, links)
     if text != 0:
         return text
     passes.begin(loads, results)
     for n in range(acting.shape[0]):
-        call(acting[n], (model, data, record, water, place))
+        share(acting[n], words, items[n], links)
     passes.end(engine, results)
 
     # to the forces, and to the mass matrix
     delivery.deliver(loads, engine, results)
     done = delivery.UNCHANGED
     if links.augment != 0:
-        done = call(links.augment, (model, data, record, water))
+        done = call(links.augment, words)
     if done != delivery.UNCHANGED:
         call(links.factor, (model, data))
     if done == delivery.AUGMENT_DUAL:
         call(links.project, (model, data))
     results.ids[MODEL], results.ids[DATA] = model, data
     return 0
-
-
-@inner
-def _take_workplace(water):
-    """Address of a workplace that no other thread works at, from the pool of the water."""
-    pool = view(water, WaterTable).pool
-    i = 0
-    while exchange(view(pool[i], Workplace).taken, 1) != 0:
-        i = (i + 1) % pool.shape[0]
-    return pool[i]
 
 
 @inner
@@ -85,7 +77,7 @@ def act(model: int64, data: int64, water: int64, record: int64) -> int64:
     A record of 0 stands for one of those that the water keeps for the last data. Returns 0, or the
     address of a text that tells what failed.
     """
-    place = _take_workplace(water)
+    place = take_workplace(water)
     if record != 0:
         text = _evaluate(model, data, water, place, record)
     else:

@@ -37,6 +37,17 @@ def call_number(typing, function, words):
 
 
 @intrinsic
+def add_to_word(typing, address, value):
+    """Add to the word at an address at one go with all threads; what it was."""
+
+    def code(context, builder, signature, args):
+        place = builder.inttoptr(args[0], ir.IntType(64).as_pointer())
+        return builder.atomic_rmw("add", place, args[1], "seq_cst")
+
+    return types.int64(types.int64, types.int64), code
+
+
+@intrinsic
 def exchange(typing, address, value):
     """Set the word at an address at one go with all threads; what it was."""
 

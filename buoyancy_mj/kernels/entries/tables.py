@@ -26,6 +26,8 @@ class Links(NamedTuple):
     """What finds the submersion of the hulls: `entries.loads.submerge`, or a function of Python."""
     augment: int
     """The C function `entries.loads.augment`; 0 where nothing has added mass."""
+    inertia: int
+    """The C function `entries.loads.add_inertia`; 0 likewise."""
     error: int
     """MuJoCo's mju_error."""
     gravity_text: int
@@ -34,6 +36,10 @@ class Links(NamedTuple):
     """MuJoCo's mj_factorM."""
     project: int
     """MuJoCo's mj_projectConstraint."""
+    crew: int
+    """Address of the `crews.Crew` that helps; 0 for none."""
+    threads: int
+    """How many threads work on one pass at most."""
 
 
 class WaterTable(NamedTuple):
@@ -43,6 +49,10 @@ class WaterTable(NamedTuple):
     links: Links
     acting: Annotated[Words, ("n",)]
     """Addresses of the C functions of the loads that act, see `entries.loads`."""
+    items: Annotated[Words, ("n",)]
+    """How many items of each may be done side by side, see `passes.count_items`."""
+    hulls: int
+    """How many hulls may be submerged side by side."""
     offsets: int
     """Address of the byte offsets of `paths.PATHS`."""
     pool: Annotated[Words, ("p",)]
