@@ -107,7 +107,7 @@ def is_known(found, b, x, y, z, time):
     return same and found[b, INSTANT] == time
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def fill(sea, blocks, store, b, x, y, z, time, dynamic):
     """Find the head in a block: at its points, and from there its polynomial.
 
@@ -147,7 +147,7 @@ def fill(sea, blocks, store, b, x, y, z, time, dynamic):
     found[b, INSTANT] = time
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _set_layer(waves, sums, first, degree, solid, start):
     """Sum cosines and sines, rows of sums from `first`, to the coefficients of a layer."""
     many = waves.shape[1]
@@ -167,7 +167,7 @@ def _beyond(m, degree):
     return m * (WAVE_DEGREE - degree)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath={"reassoc", "contract"})
 def _set_sums(blocks, sums, line, solid, still):
     """Sum up the waves about a height in still water: the rise, the rest, and the mean."""
     waves, many = blocks.waves, blocks.waves.shape[1]
@@ -200,7 +200,7 @@ def _set_sums(blocks, sums, line, solid, still):
     line[0] += lost
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath={"reassoc", "contract"})
 def _set_mean(waves, sums, line):
     """Sum up what the waves take off the mean head, as a polynomial in the height."""
     many = waves.shape[1]
@@ -216,7 +216,7 @@ def _set_mean(waves, sums, line):
             sums[11, w] *= inverse * waves[K, w]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _sum_tide(blocks, sums):
     """What all the water rises."""
     if blocks.layout[TIDAL] == 0.0:
@@ -224,7 +224,7 @@ def _sum_tide(blocks, sums):
     return sum_products(blocks.waves, TIDE, sums, 0, blocks.waves.shape[1])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _set_heads(layout, line, solid, room, z, still, tide):
     """Write the heads of waves at the points to row FOUND."""
     eta, guess, away = room[3 + ETA], room[3 + STILL], room[3 + AWAY]
@@ -274,7 +274,7 @@ def head_at(sea, blocks, store, x, y, z, time, dynamic):
     return head_in(layout, found, b, x, y, z)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def head_in(layout, found, b, x, y, z):
     """The head of a block at a place."""
     scale = 1.0 / layout[REACH]
@@ -293,7 +293,7 @@ def head_in(layout, found, b, x, y, z):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def quadratic_in(layout, found, b, x, y, z):
     """The head of a block about a place, as a quadratic.
 

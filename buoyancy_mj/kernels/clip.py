@@ -33,7 +33,6 @@ from buoyancy_mj.kernels.cuts import MOST, add, nothing, subtract, sum_cuts
 from buoyancy_mj.kernels.halving import split
 from buoyancy_mj.kernels.hulls import (
     ALLOWED,
-    EDGE,
     FILL,
     WHOLE_AREA,
     WHOLE_CENTROID,
@@ -63,7 +62,7 @@ CENTROID = slice(CX, WETTED_AREA)
 """Columns of the centroid."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def submerge_hulls(
     hulls,  # `hulls.Hulls`
     geoms,  # `multibody.Geoms`
@@ -124,7 +123,7 @@ def _set_whole(out, h, wholes, origin, r, area):
     out[h, CX], out[h, CY], out[h, CZ] = place(origin, r, x, y, z)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _set_wet(out, h, wholes, origin, r, wet):
     """Write the results of a hull that the surface cuts, by what `_walk` found."""
     v, mx, my, mz, area, waterplane, px, py = wet
@@ -144,7 +143,7 @@ def _set_wet(out, h, wholes, origin, r, wet):
         out[h, WATERPLANE_Y] = origin[1] + py / waterplane
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
     hulls, h, origin, r, level, time, curvature, scratch
 ):
@@ -169,7 +168,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     w, row, polynomial = scratch.seen[3] if wavy else d, scratch.seen[4], scratch.seen[5]
     most, others, crossed = scratch.sorted[0], scratch.sorted[1], scratch.sorted[2]
     bent, stack, allowed = scratch.sorted[3], scratch.stack, hulls.whole[h, ALLOWED]
-    rough = wavy and 0.125 * curvature * hulls.whole[h, EDGE] ** 2 > allowed
+    edges, most_bent = hulls.edges, 0.125 * curvature if wavy else 0.0
     cuts, waiting = scratch.cuts, 0
 
     # integrals over wet nodes, over triangles, and of e over the waterplane
@@ -193,12 +192,13 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             base, count = vertices_of(spans, i)
             swell.see(vertices, base, count, plane, r, x, y, d)
             if wavy:
-                w[:count] = d[:count]
+                for n in range(count):
+                    w[n] = d[n]
                 swell.add_rest(
                     x, y, count, rest, layout, sea, found, phases, near, w, row, polynomial
                 )
             first, behind = faces_of(spans, i)
-            if rough:
+            if most_bent * edges[i] * edges[i] > allowed:
                 many, few, cut, halved = sort_bent_faces(
                     faces, first, behind, base, x, y, w, curvature, allowed,
                     most, others, crossed, bent,
@@ -272,7 +272,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     return _join(total, sums, extra, plane, r, hulls.whole[h, FILL])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _take(cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near):
     """Take the cuts that wait, into integrals over triangles, and of e over the waterplane."""
     sums = add(sums, sum_cuts(cuts, waiting))

@@ -95,7 +95,7 @@ def set_size(cuts, n, size):
     cuts[_SIZE + n] = size
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def sum_cuts(cuts, count):
     """Sum the triangles that wait; then their ends stand in the room instead of them."""
     for n in range(count):

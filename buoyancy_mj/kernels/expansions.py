@@ -5,7 +5,7 @@ from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import rotate_back
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def add_node(moments, node, middle, r, quadratic, sums):
     """Add force and torque of the head over a node.
 

@@ -16,7 +16,7 @@ CORNER, PART, COLUMNS = 4, 12, 13
 """Columns of a corner; the column of the part of the area; how many there are."""
 DEEP = 48
 """Triangles that wait at most: as many as one is halved, one after the other, and one more."""
-STEEP = 0.1
+STEEP = 1.0
 """The part of what is allowed, about twice over, that is left where edges cross steeply."""
 _THREE = (0, 1, 2)
 
@@ -29,7 +29,7 @@ def bends(ax, ay, aw, bx, by, bw, curvature, allowed):
     return near and off * off > allowed * max(STEEP * abs(aw - bw), off)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def split(stack, top, curvature, allowed, sea, place, touch, time):
     """Halve the triangle on top of a stack if one of its edges bends, see `bends`.
 

@@ -7,11 +7,11 @@ from buoyancy_mj.kernels.blocks import Blocks
 from buoyancy_mj.kernels.tiles import Tiles
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
-FILL, EDGE, ALLOWED, COLUMNS = 11, 12, 13, 14
+FILL, ALLOWED, COLUMNS = 11, 12, 13
 """Columns of `Hulls.whole`, and how many: volume that the whole hull displaces, its centroid (3),
 the area of its faces, middle (3) and half sides (3) of its bounding box, the part of its volume
-that displaces water, its longest edge, and by how much a straight edge that lies in the surface may
-be off, see `halving` [m]."""
+that displaces water, and by how much a straight edge that lies in the surface may be off, see
+`halving` [m]."""
 
 
 class Hulls(NamedTuple):
@@ -34,6 +34,8 @@ class Hulls(NamedTuple):
     """Bounding box of each node: middle and half sides [m]."""
     moments: Annotated[Doubles, ("n", 31)]
     """Moments of the vector area under each node, times the part that displaces; and the area."""
+    edges: Annotated[Doubles, ("n",)]
+    """Longest edge of the faces of each leaf, 0 for other nodes [m]."""
     whole: Annotated[Doubles, ("h", COLUMNS)]
     """Each hull as a whole, in columns `WHOLE_VOLUME` to `ALLOWED`."""
     typical: Annotated[Doubles, ("d",)]

@@ -66,7 +66,7 @@ def sort_faces(faces, first, end, base, w, most, others, crossed):
     return many, few, cut
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def sort_bent_faces(
     faces, first, end, base, x, y, w, curvature, allowed, most, others, crossed, bent
 ):

@@ -30,7 +30,7 @@ def on_powers(line, degree, z):
     return total
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def set_in_space_at_many(solid, start, degree, x, y, z, count, row, level, out, slope):
     """Write a polynomial in x, y, z at `count` places to `out`, and its slope along z to `slope`.
 
@@ -68,7 +68,7 @@ def set_at_many(flat, end, degree, x, y, count, row, total):
     return i
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def deepen(solid, start, degree):
     """Write the layers z^2 and up of a polynomial without a Laplacian, from the layers below."""
     below, extent = start, size(degree)

@@ -16,7 +16,7 @@ from buoyancy_mj.kernels.blocks import fill, find_block, is_known, quadratic_in
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.expansions import add_node
 from buoyancy_mj.kernels.halving import CORNER, PART, split
-from buoyancy_mj.kernels.hulls import ALLOWED, EDGE, WHOLE_HALF, WHOLE_MIDDLE
+from buoyancy_mj.kernels.hulls import ALLOWED, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, Setting, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.kernels.tiles import swing, tangent_at
@@ -46,7 +46,7 @@ def typical(waves: NDArray[np.float64]) -> NDArray[np.float64]:
     return numbers
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def press_hulls(
     hulls,  # `hulls.Hulls`
     geoms,  # `multibody.Geoms`
@@ -95,7 +95,7 @@ def press_hulls(
         out[h, 3], out[h, 4], out[h, 5] = -(sums[3] + tx), -(sums[4] + ty), -(sums[5] + tz)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
     hulls, h, setting, r, curvature, scratch
 ):
@@ -109,7 +109,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     known, sizes = store.found, blocks.layout
     time, dynamic = setting.time, setting.dynamic
     stack, allowed = scratch.cut.stack, hulls.whole[h, ALLOWED]
-    rough = 0.125 * curvature * hulls.whole[h, EDGE] ** 2 > allowed
+    edges, most_bent = hulls.edges, 0.125 * curvature
     # int64: a literal 0 would have all that it is given to compiled twice
     count = int64(0)
     i, wet_until = hulls.nodes[h], int64(0)
@@ -148,6 +148,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             add_node(moments, i, (b0, b1, b2), r, quadratic, turned)
         elif not dry and tree.is_leaf(spans, i):
             first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
+            rough = most_bent * edges[i] * edges[i] > allowed
 
             # depths of the vertices, where some may be dry
             for n in range(last - first):

@@ -50,7 +50,7 @@ class Setting(NamedTuple):
     """Whether the pressure is that of linear waves, or hydrostatic under their surface."""
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def add_wet_part(points, count, p, q, o, dp, dq, do, area, most, sums):
     """Add the points of the wet part of a triangle with depths at its corners.
 
@@ -90,7 +90,7 @@ def add_wet_part(points, count, p, q, o, dp, dq, do, area, most, sums):
     return _add_triangle(points, count, a, o, b, scale(s * (1.0 - t), area), most, sums)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _add_triangle(points, count, p, q, o, area, most, sums):
     """Add the points of a rule over a wet triangle, with their shares of its area."""
     longest = most * max(distance(p, q), distance(q, o), distance(o, p))
@@ -146,7 +146,7 @@ def _put(points, n, place, share, area):
         points[3 + c, n] = share * area[c]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def sum_points(sea, blocks, store, setting, points, count, sums):
     """Add force and torque about the origin of the pressure at all points that wait.
 

@@ -1,7 +1,7 @@
 """`Scratch`: arrays to work in, for one thread."""
 
 from collections.abc import Mapping
-from typing import Annotated, NamedTuple, TypeVar
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -10,8 +10,6 @@ from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, fields
 from buoyancy_mj.kernels.blocks import BlockStore
 from buoyancy_mj.kernels.quadrature import PLACES
 from buoyancy_mj.kernels.tiles import TileStore
-
-T = TypeVar("T")
 
 
 class CutScratch(NamedTuple):
@@ -59,7 +57,7 @@ def new_scratches(count: int, vertices: int, waves: int) -> list[Scratch]:
     return _new_blocks(Scratch, count, {"v": vertices, "w": waves})
 
 
-def _new_blocks(kind: type[T], count: int, sizes: Mapping[str, int]) -> list[T]:
+def _new_blocks(kind: type, count: int, sizes: Mapping[str, int]) -> list[Any]:
     """Scratch of a kind, `count` times, whose arrays are parts of one block each."""
     parts = [
         _new_blocks(field, count, sizes)

@@ -130,7 +130,7 @@ def approach(level, layout, waves, found, phases, origin, r, whole, h, time, nea
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _gather(layout, waves, found, phases, x, y, r, time, near):
     """Bring the near waves to a hull, and find the plane over its middle.
 
@@ -218,7 +218,7 @@ def see(vertices, first, count, plane, r, x, y, d):
         d[n] = plane.origin_depth + (g0 * p0 + g1 * p1 + g2 * p2)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def add_rest(x, y, count, rest, layout, waves, found, phases, near, out, row, total):
     """Add the rest e at places seen from the middle of the hull to `out`.
 
@@ -252,7 +252,7 @@ def _add_wave(x, y, count, swell, i, doubled, out):
         out[n] += crest * cosine - slope * sine
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, near):
     """Integrals of e, x e, y e and (plane + e / 2) e over triangles of the waterplane.
 

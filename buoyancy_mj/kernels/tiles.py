@@ -72,7 +72,7 @@ def find_tile(layout, waves, found, phases, x, y, time):
     return t
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _fill(layout, waves, found, phases, t, x, y, time):
     """Sum the waves up in a tile, whose middle is given."""
     held, degree = int(layout[HELD]), int(layout[DEGREE])
@@ -85,7 +85,7 @@ def _fill(layout, waves, found, phases, t, x, y, time):
     found[t, MIDDLE_X], found[t, MIDDLE_Y], found[t, INSTANT] = x, y, time
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def set_phases(waves, count, x, y, time, out):
     """Write cosine and sine of the phases of the first `count` waves at a place, to two rows."""
     for w in range(count):
@@ -93,7 +93,7 @@ def set_phases(waves, count, x, y, time, out):
         out[0, w], out[1, w] = turn(waves[KX, w] * x + waves[KY, w] * y + late)
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "contract"})
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath={"reassoc", "contract"})
 def sum_products(a, i, b, j, count):
     """The sum of the products of the first `count` numbers of two rows, in any order."""
     total = 0.0
@@ -110,7 +110,7 @@ def elevation_in(layout, found, t, x, y):
     return _value(found, t, int(layout[DEGREE]), u, v)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _value(found, t, degree, u, v):
     """A tile's polynomial, by Horner's rule."""
     i = FLAT + size(degree)
@@ -133,7 +133,7 @@ def tangent_in(layout, found, t, x, y):
     return e, along * scale, across * scale
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _value_and_slope(found, t, degree, u, v):
     """A tile's polynomial and its gradient, by Horner's rule."""
     i = FLAT + size(degree)
@@ -150,7 +150,7 @@ def _value_and_slope(found, t, degree, u, v):
     return total, along, across
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def second_derivatives_in(layout, found, t, x, y):
     """The second derivatives of the elevation of a tile at a place: xx, xy, yy."""
     scale = layout[PER_REACH]
@@ -182,7 +182,7 @@ def is_near(layout, found, t, x, y):
     return abs(x - found[t, MIDDLE_X]) <= reach and abs(y - found[t, MIDDLE_Y]) <= reach
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def four_elevations(layout, waves, found, phases, xs, ys, time):
     """Elevations at four places, which the processor finds side by side.
 
@@ -216,7 +216,7 @@ def four_elevations(layout, waves, found, phases, xs, ys, time):
     return e0, e1, e2, e3
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def _add_at_many(layout, found, t, mx, my, scale, x, y, count, row, total, out):
     """Add a tile's polynomial, from its middle, at `count` places to `out`, by Horner's rule."""
     degree = int(layout[DEGREE])
@@ -237,7 +237,7 @@ def _add_at_many(layout, found, t, mx, my, scale, x, y, count, row, total, out):
         out[n] += total[n]
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def add_elevations(layout, waves, found, phases, place, x, y, count, time, row, total, out):
     """Add the elevations of tiles at `count` places x, y from a place to `out`.
 
@@ -272,7 +272,7 @@ def add_elevations(layout, waves, found, phases, place, x, y, count, time, row, 
         n += 4
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def tangent_at(layout, waves, found, phases, x, y, time):
     """The elevation of all waves at a place, and its gradient."""
     held = int(layout[HELD])
@@ -290,7 +290,7 @@ def tangent_at(layout, waves, found, phases, x, y, time):
     return eta, along, across
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def swing(layout, waves, found, phases, x, y, time, radius):
     """Elevation at a place, and bounds within a radius: how much it differs, and is curved."""
     held = int(layout[HELD])

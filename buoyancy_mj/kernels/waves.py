@@ -37,7 +37,7 @@ def phase_at(waves, w, x, y, time):
     return waves[w, KX] * x + waves[w, KY] * y - waves[w, OMEGA] * time + waves[w, PHASE]
 
 
-@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def elevation(waves, x, y, time):
     """Sum of the rows' elevations [m] above the still level at one horizontal point."""
     total = 0.0
@@ -47,7 +47,7 @@ def elevation(waves, x, y, time):
     return total
 
 
-@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def tangent(waves, x, y, time):
     """Elevation over the still level at a place, and its gradient."""
     eta = along = across = 0.0
@@ -60,7 +60,7 @@ def tangent(waves, x, y, time):
     return eta, along, across
 
 
-@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def head(waves, x, y, z, time, dynamic):
     """Pressure over rho g [m] at height z over the still level.
 
@@ -94,7 +94,7 @@ def head(waves, x, y, z, time, dynamic):
     return settle(z, still, rise, strain, rest, rest_strain, tide, mean, whole)
 
 
-@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def survey(waves, x, y, time):
     """Elevation at a place, how fast the waves fade with depth [1/m], and the water's depth [m]."""
     eta = weighted = energy = 0.0
@@ -110,7 +110,7 @@ def survey(waves, x, y, time):
     return eta, decay(weighted / energy if energy > 0.0 else 0.0, depth), depth
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def add_velocity(waves, x, y, z, time, out):
     """Add the waves' velocity [m/s] at height z above the still level to `out` (3,).
 
@@ -122,7 +122,7 @@ def add_velocity(waves, x, y, z, time, out):
     out[2] += w
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", _nrt=False)
 def add_motion(waves, x, y, z, time, velocity, acceleration):
     """Add the waves' velocity [m/s] and acceleration [m/s^2] to `velocity` and `acceleration` (3,).
 
@@ -142,7 +142,7 @@ def add_motion(waves, x, y, z, time, velocity, acceleration):
     acceleration[2] += dw
 
 
-@njit(cache=True, error_model="numpy", fastmath=ANY_ORDER)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def _motion(waves, x, y, z, time):
     """The waves' velocity (3) and acceleration (3) at a place."""
     eta, fall, depth = survey(waves, x, y, time)

@@ -199,7 +199,7 @@ def _hulls(
     first_of = {key: h for h, key in reversed(list(enumerate(keys)))}
     kept = sorted(first_of.values())
     place_of = {keys[h]: place for place, h in enumerate(kept)}
-    of_hulls, trees, parts = trees, [trees[h] for h in kept], fills[kept]
+    trees, parts = [trees[h] for h in kept], fills[kept]
 
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
     first_face = np.cumsum([0, *(len(t.faces) for t in trees)])
@@ -228,7 +228,8 @@ def _hulls(
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
-        np.array([_whole(*each) for each in zip(meshes, of_hulls, fills, allowed, strict=True)]),
+        np.concatenate([_measure_leaves(t) for t in trees]),
+        np.array([_whole(*each) for each in zip(meshes, fills, allowed, strict=True)]),
         pressure.typical(waves),
         lay_tiles(waves, radii),
         lay_blocks(waves, radii),
@@ -236,14 +237,20 @@ def _hulls(
     )
 
 
-def _whole(mesh: TriMesh, tree: Tree, fill: float, allowed: float) -> list[float]:
+def _whole(mesh: TriMesh, fill: float, allowed: float) -> list[float]:
     """One row of `Hulls.whole`."""
     half, middle = 0.5 * mesh.extents, mesh.bounds.mean(axis=0)
-    corners = tree.vertices[tree.faces]
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
-    return [
-        fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, longest, allowed,
-    ]  # fmt: skip
+    return [fill * mesh.volume, *mesh.centroid, mesh.area, *middle, *half, fill, allowed]
+
+
+def _measure_leaves(of: Tree) -> NDArray[np.float64]:
+    """The longest edge of the faces of each leaf (n,), 0 for other nodes [m]."""
+    corners = of.vertices[of.faces]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    leaves = of.spans[:, tree.BEHIND] == np.arange(len(of.spans)) + 1
+    edges = np.zeros(len(of.spans))
+    edges[leaves] = np.maximum.reduceat(longest, of.spans[leaves, tree.FIRST_FACE])
+    return edges
 
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:

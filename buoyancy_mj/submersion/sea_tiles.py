@@ -24,7 +24,7 @@ from buoyancy_mj.kernels.still_water import decay, seabed
 from buoyancy_mj.kernels.tiles import Tiles
 from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, PHASE
 
-ACCURACY = 1e-5
+ACCURACY = 3e-6
 """The part of a hull's radius that tiles may leave out of the elevation in all."""
 FEW = 4
 """Waves up to which they are summed one by one."""
@@ -112,6 +112,8 @@ def _plan(rows: NDArray[np.float64], allowed: float, radius: float) -> tuple[int
         0.6 * sizes + 15.0 * (many - held)
     )
     degree, last = np.unravel_index(np.argmin(cost), cost.shape)
+    if cost[degree, last] > _ASKED * 15.0 * many:
+        return 0, LEAST, 1.0
     return int(held[last]), int(degrees[degree]), float(halves[degree, last])
 
 
@@ -135,8 +137,9 @@ def _fit(rows: NDArray[np.float64], degree: int, reach: float) -> NDArray[np.flo
     points, fit = _fitting(degree)
     phases = points @ (reach * rows[[KX, KY]])
     odd = np.array([sum(exponents) % 2 == 1 for exponents in _exponents(degree)])[:, None]
-    waves: NDArray[np.float64] = np.where(odd, -(fit @ np.sin(phases)), fit @ np.cos(phases))
-    return waves * rows[AMPLITUDE]
+    fitted: NDArray[np.float64] = np.where(odd, -(fit @ np.sin(phases)), fit @ np.cos(phases))
+    fitted *= rows[AMPLITUDE]
+    return fitted
 
 
 # blocks

@@ -79,7 +79,8 @@ def find_longest_edges(
     volumes = np.array([mesh.volume for mesh in meshes])
     areas = np.array([mesh.area for mesh in meshes])
     amplitudes, k = np.abs(water.rows[:, 0]), np.hypot(*water.rows[:, 1:3].T)
-    gentle = GENTLE / mean_wave_number(amplitudes, k) if k.any() else math.inf
+    waves = (amplitudes * k).any()
+    gentle = GENTLE / mean_wave_number(amplitudes, k) if waves else math.inf
     edges, allowed, worst = [], [], tolerance
     for body in bodies:
         volume, area = volumes[bodies == body].sum(), areas[bodies == body].sum()

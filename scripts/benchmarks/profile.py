@@ -5,6 +5,7 @@ the other. What they and the engine sum up to is printed beside the step as a wh
 """
 
 import dataclasses
+import math
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -23,12 +24,15 @@ from benchmarks.timing import spent_since
 from buoyancy_mj import Scene, Start, read_scene
 from buoyancy_mj.engine.plugin import water_in
 from buoyancy_mj.kernels import clip, delivery, passes
+from buoyancy_mj.kernels.blocks import INSTANT
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.entries.pointers import call
 from buoyancy_mj.kernels.entries.tables import WaterTable, Workplace
 from buoyancy_mj.kernels.entries.views import view, view_engine
+from buoyancy_mj.kernels.hulls import Hulls
 from buoyancy_mj.kernels.multibody import Engine
 from buoyancy_mj.kernels.passes import Record
+from buoyancy_mj.kernels.tiles import Tiles
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 
@@ -118,9 +122,10 @@ def _list_calls(
     # the submersion, under a flat surface and under the waves
     now = np.array([data.time for data in datas])
     x, y, _ = np.transpose([data.subtree_com[water.bodies[0]] for data in datas])
-    sea = load_model.arrays.sea
-    flat = water.water.elevation(x, y, now), 0
-    waved = np.full(len(datas), sea.level), len(sea.waves)
+    sea, tiles = load_model.arrays.sea, load_model.arrays.hulls.tiles
+    still = np.zeros_like(tiles.layout), np.zeros((len(tiles.waves), 0))
+    flat = water.water.elevation(x, y, now), *still
+    waved = np.full(len(datas), sea.level), *tiles
     under_flat = Call(_submerge, (*places, *flat))
     under_waves = Call(_submerge, (*places, *waved))
     calls = [("walk", 1.0, under_flat), ("sea", 1.0, under_waves), ("sea", -1.0, under_flat)]
@@ -176,19 +181,24 @@ def _run_devices(
 
 
 @njit(cache=True, error_model="numpy")
-def _submerge(count, state, water, model, datas, levels, waves):
-    """Submerge all hulls under the first so many waves, and leave that in a record of its own."""
+def _submerge(count, state, water, model, datas, levels, layout, waves):
+    """Submerge all hulls under the waves of a layout, and leave that in a record of its own."""
     table = view(water, WaterTable)
     engine = view_engine(model, datas[state], table.offsets, Engine)
-    hulls, sea, scratch = table.loads.hulls, table.loads.sea, view(table.pool[0], Workplace).scratch
+    own, scratch = table.loads.hulls, view(table.pool[0], Workplace).scratch
+    hulls = Hulls(
+        own.vertices, own.faces, own.areas, own.sizes, own.nodes, own.spans, own.boxes,
+        own.moments, own.edges, own.whole, own.typical, Tiles(layout, waves), own.blocks,
+        own.frames,
+    )  # fmt: skip
     wet = view(table.records[STATES + state], Record).wet
-    for _ in range(count):
+    for n in range(count):
         clip.submerge_hulls(
             hulls,
             engine.geoms,
             levels[state],
-            sea.waves[:waves],
-            engine.time,
+            # as at a new instant, so that the sea is summed up anew
+            engine.time + 1e-9 * n,
             scratch.cut,
             wet,
             0,
@@ -211,7 +221,11 @@ def _act(count, state, water, model, datas, load):
     """Add one of the loads that act."""
     table = view(water, WaterTable)
     words = model, datas[state], table.records[state], water, table.pool[0]
+    found = view(table.pool[0], Workplace).scratch.pressure.store.found
     for _ in range(count):
+        # as at a new instant, so that the sea is summed up anew
+        for b in range(found.shape[0]):
+            found[b, INSTANT] = math.nan
         call(table.acting[load], (*words, int64(0), table.items[load]))
 
 

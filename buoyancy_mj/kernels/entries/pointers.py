@@ -4,6 +4,8 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
+from buoyancy_mj.kernels.compiling import njit
+
 _WORD = ir.IntType(64)
 
 
@@ -66,6 +68,13 @@ def word(typing, address):
         return builder.load(builder.inttoptr(args[0], _WORD.as_pointer()))
 
     return types.int64(types.int64), code
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
+def integers(address):
+    """The two 32-bit integers at an address."""
+    both = word(address)
+    return (both << 32) >> 32, both >> 32
 
 
 @intrinsic

@@ -3,12 +3,11 @@
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import carray
 
 from buoyancy_mj.kernels.arrays import Doubles, Int32s, Words
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.drafts import find_draft
-from buoyancy_mj.kernels.entries.pointers import pointer, word
+from buoyancy_mj.kernels.entries.pointers import integers, word
 from buoyancy_mj.kernels.entries.views import view
 from buoyancy_mj.kernels.watching import (
     Bounds,
@@ -73,14 +72,13 @@ def look(lookout, before, now):
 def add_step(lookout, before, now):
     """Keep of each vehicle what a step from one time [s] to another has left."""
     table = view(lookout, Lookout)
-    count = carray(pointer(table.contact_count), (1,), np.int32)[0]
+    count, _ = integers(table.contact_count)
     for n in range(table.watched.shape[0]):
         watched = view(table.watched[n], Watched)
         add_poses(watched, table.xpos, table.xmat, table.xipos, before)
         for contact in range(count):
             place = word(table.contacts) + contact * table.contact_size + table.contact_geoms
-            geoms = carray(pointer(place), (2,), np.int32)
-            if touches(watched, geoms[0], geoms[1]):
+            if touches(watched, *integers(place)):
                 add_contact(watched, now)
                 break
 
