@@ -13,9 +13,9 @@ from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
 
-POINT = 0.1
+POINT = 0.2
 """Longest edge of a triangle, times the wave number, for one point: to POINT^2 / 36."""
-TINY = 0.3
+TINY = 0.75
 """Longest edge of a triangle, times the wave number, for three points: to TINY^3 / 200."""
 PIECE = 1.5
 """Longest edge of a piece of a triangle, times the wave number."""

@@ -34,7 +34,7 @@ OVERLAP = 1.5
 """Side of a tile over half the side of the square in which its polynomial holds."""
 _POINTS = 12
 """Chebyshev's points along a side of a tile, at which polynomials are fitted."""
-_ASKED = 300
+_ASKED = 4000
 """How often the elevation is asked for in a pass, about."""
 
 
@@ -109,7 +109,7 @@ def _plan(rows: NDArray[np.float64], allowed: float, radius: float) -> tuple[int
     sizes = (powers * (powers + 1) // 2).astype(float)
     count = (1.0 + 2.0 * radius / (OVERLAP * halves)) ** 2
     cost = count * (200.0 + held * (2.0 + 0.1 * sizes)) + _ASKED * (
-        0.6 * sizes + 15.0 * (many - held)
+        0.15 * sizes + 15.0 * (many - held)
     )
     degree, last = np.unravel_index(np.argmin(cost), cost.shape)
     if cost[degree, last] > _ASKED * 15.0 * many:
