@@ -322,7 +322,7 @@ class Flag(typing.NamedTuple):
 
 def find_flags():
     """All flags of all commands that take values."""
-    for module in set(MODULES.values()):
+    for module in sorted(set(MODULES.values())):
         importlib.import_module(f"buoyancy_mj.cli.{module}")
     for info in app.registered_commands:
         command = info.name or info.callback.__name__
