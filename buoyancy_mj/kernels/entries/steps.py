@@ -78,7 +78,8 @@ def add_step(lookout, before, now):
         add_poses(watched, table.xpos, table.xmat, table.xipos, before)
         for contact in range(count):
             place = word(table.contacts) + contact * table.contact_size + table.contact_geoms
-            if touches(watched, *integers(place)):
+            one, other = integers(place)
+            if touches(watched, one, other):
                 add_contact(watched, now)
                 break
 
