@@ -124,7 +124,8 @@ def test_in_waves_sides_differ_by_the_cuts_of_triangles_alone(pressure):
         weight = model.body_mass[1] * 9.81
         worst.append(np.abs(aside).max() / weight)
         assert worst[-1] < 0.1 * tolerance
-    assert worst[1] < 0.5 * worst[0]
+    # or there is nothing left to differ
+    assert worst[1] < max(0.5 * worst[0], 1e-12)
 
 
 # yaw

@@ -3,6 +3,34 @@
 from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import rotate_back
+from buoyancy_mj.kernels.waves import head
+
+
+@njit(cache=True, error_model="numpy", _nrt=False)
+def find_quadratic(waves, x, y, z, s, time, dynamic):
+    """The head of waves about a place as a quadratic, by its values at 13 places up to s away.
+
+    Returns its value, its gradient (3), and its coefficients of x^2, y^2, z^2, x y, x z and y z.
+    """
+    p = head(waves, x, y, z, time, dynamic)
+    px, nx = head(waves, x + s, y, z, time, dynamic), head(waves, x - s, y, z, time, dynamic)
+    py, ny = head(waves, x, y + s, z, time, dynamic), head(waves, x, y - s, z, time, dynamic)
+    pz, nz = head(waves, x, y, z + s, time, dynamic), head(waves, x, y, z - s, time, dynamic)
+    xy = head(waves, x + s, y + s, z, time, dynamic) + head(waves, x - s, y - s, z, time, dynamic)
+    xz = head(waves, x + s, y, z + s, time, dynamic) + head(waves, x - s, y, z - s, time, dynamic)
+    yz = head(waves, x, y + s, z + s, time, dynamic) + head(waves, x, y - s, z - s, time, dynamic)
+    step, square = 0.5 / s, 0.5 / (s * s)
+    return (
+        p, (step * (px - nx), step * (py - ny), step * (pz - nz)),
+        (
+            square * (px + nx - 2.0 * p),
+            square * (py + ny - 2.0 * p),
+            square * (pz + nz - 2.0 * p),
+            square * (xy - px - nx - py - ny + 2.0 * p),
+            square * (xz - px - nx - pz - nz + 2.0 * p),
+            square * (yz - py - ny - pz - nz + 2.0 * p),
+        ),
+    )  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)

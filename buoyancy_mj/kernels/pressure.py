@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.blocks import fill, find_block, is_known, quadratic_in
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.expansions import add_node
+from buoyancy_mj.kernels.expansions import add_node, find_quadratic
 from buoyancy_mj.kernels.halving import CORNER, PART, split
 from buoyancy_mj.kernels.hulls import ALLOWED, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, Setting, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
-from buoyancy_mj.kernels.tiles import swing, tangent_at
+from buoyancy_mj.kernels.tiles import HELD, swing, tangent_at
 from buoyancy_mj.kernels.vectors import place, rotate, scale, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 
@@ -84,9 +84,10 @@ def press_hulls(
             out[h, :] = 0.0 if depth < math.inf else math.nan
             continue
 
-        setting = Setting((origin[0], origin[1], origin[2] - level), time, dynamic)
+        few = layout[HELD] == 0.0
+        setting = Setting((origin[0], origin[1], origin[2] - level), time, dynamic, few)
         sums[:], turned[:] = 0.0, 0.0
-        _walk(hulls, h, setting, r, curvature, scratch)
+        _walk(hulls, h, sea.waves, setting, r, curvature, scratch)
 
         # the sum, outward
         fx, fy, fz = rotate(r, turned[0], turned[1], turned[2])
@@ -97,7 +98,7 @@ def press_hulls(
 
 @njit(cache=True, error_model="numpy", _nrt=False)
 def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
-    hulls, h, setting, r, curvature, scratch
+    hulls, h, rows, setting, r, curvature, scratch
 ):
     """Add nodes and triangles of a hull; `curvature` is a bound of the surface's over it."""
     typical, spans, boxes, moments = hulls.typical, hulls.spans, hulls.boxes, hulls.moments
@@ -141,10 +142,13 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             most = typical[int(min(top * most, DEPTHS - 1.0))]
         small = wet and not dry and most * size <= SMALL and size > 0.0
         if small:
-            b, mx, my, mz = find_block(sizes, x, y, z)
-            if not is_known(known, b, mx, my, mz, time):
-                fill(waves, blocks, store, b, mx, my, mz, time, dynamic)
-            quadratic = quadratic_in(sizes, known, b, x, y, z)
+            if setting.few:
+                quadratic = find_quadratic(rows, x, y, z, size / math.sqrt(3.0), time, dynamic)
+            else:
+                b, mx, my, mz = find_block(sizes, x, y, z)
+                if not is_known(known, b, mx, my, mz, time):
+                    fill(waves, blocks, store, b, mx, my, mz, time, dynamic)
+                quadratic = quadratic_in(sizes, known, b, x, y, z)
             add_node(moments, i, (b0, b1, b2), r, quadratic, turned)
         elif not dry and tree.is_leaf(spans, i):
             first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
@@ -165,7 +169,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 if dj <= 0.0 and dk <= 0.0 and do <= 0.0 and not rough:
                     continue
                 if count > PLACES - TRIANGLE:
-                    count = sum_points(waves, blocks, store, setting, points, count, sums)
+                    count = sum_points(rows, waves, blocks, store, setting, points, count, sums)
                 p = _corner(vertices, j, r, setting)
                 q = _corner(vertices, k, r, setting)
                 s = _corner(vertices, o, r, setting)
@@ -191,7 +195,9 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                     dj, dk, do = stack[top, 3], stack[top, CORNER + 3], stack[top, 2 * CORNER + 3]
                     if dj > 0.0 or dk > 0.0 or do > 0.0:
                         if count > PLACES - TRIANGLE:
-                            count = sum_points(waves, blocks, store, setting, points, count, sums)
+                            count = sum_points(
+                                rows, waves, blocks, store, setting, points, count, sums
+                            )
                         p, q, s = (
                             _corner_of(stack, top, 0),
                             _corner_of(stack, top, 1),
@@ -201,7 +207,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                         count = add_wet_part(points, count, p, q, s, dj, dk, do, part, most, sums)
                     top -= 1
         i = tree.node_after(spans, i, dry or small)
-    sum_points(waves, blocks, store, setting, points, count, sums)
+    sum_points(rows, waves, blocks, store, setting, points, count, sums)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -12,10 +12,11 @@ from buoyancy_mj.kernels.blocks import fill, find_block, head_in, is_known
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
+from buoyancy_mj.kernels.waves import head as wave_head
 
-POINT = 0.2
+POINT = 0.1
 """Longest edge of a triangle, times the wave number, for one point: to POINT^2 / 36."""
-TINY = 0.75
+TINY = 0.3
 """Longest edge of a triangle, times the wave number, for three points: to TINY^3 / 200."""
 PIECE = 1.5
 """Longest edge of a piece of a triangle, times the wave number."""
@@ -48,6 +49,8 @@ class Setting(NamedTuple):
     """[s]."""
     dynamic: bool
     """Whether the pressure is that of linear waves, or hydrostatic under their surface."""
+    few: bool
+    """Whether there are so few waves that they are summed up at each point."""
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -147,10 +150,11 @@ def _put(points, n, place, share, area):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def sum_points(sea, blocks, store, setting, points, count, sums):
+def sum_points(waves, sea, blocks, store, setting, points, count, sums):
     """Add force and torque about the origin of the pressure at all points that wait.
 
     Args:
+        waves: of the sea, see `kernels.waves`; where they are few the pressure is theirs itself.
         sea: `tiles.Tiles.waves`.
         blocks: `blocks.Blocks`.
         store: a `blocks.BlockStore`.
@@ -166,10 +170,13 @@ def sum_points(sea, blocks, store, setting, points, count, sums):
     ox, oy, oz = setting.origin
     for n in range(count):
         x, y, z = points[0, n], points[1, n], points[2, n]
-        b, mx, my, mz = find_block(layout, x, y, z)
-        if not is_known(found, b, mx, my, mz, time):
-            fill(sea, blocks, store, b, mx, my, mz, time, setting.dynamic)
-        head = head_in(layout, found, b, x, y, z)
+        if setting.few:
+            head = wave_head(waves, x, y, z, time, setting.dynamic)
+        else:
+            b, mx, my, mz = find_block(layout, x, y, z)
+            if not is_known(found, b, mx, my, mz, time):
+                fill(sea, blocks, store, b, mx, my, mz, time, setting.dynamic)
+            head = head_in(layout, found, b, x, y, z)
         fx, fy, fz = head * points[3, n], head * points[4, n], head * points[5, n]
         x, y, z = x - ox, y - oy, z - oz
         sums[0] += fx

@@ -34,7 +34,7 @@ OVERLAP = 1.5
 """Side of a tile over half the side of the square in which its polynomial holds."""
 _POINTS = 12
 """Chebyshev's points along a side of a tile, at which polynomials are fitted."""
-_ASKED = 4000
+_ASKED = 2000
 """How often the elevation is asked for in a pass, about."""
 
 
