@@ -842,7 +842,8 @@ def test_a_sweep_of_a_program_needs_trust_and_tells_of_runs_that_fail(code, monk
     assert told.exit_code == 1
     assert "the scene runs the code of 'mine.py:lost'" in " ".join(told.output.split())
     assert not (code / "out.csv").exists()
-    assert CliRunner().invoke(app, [*words, "--trust"]).exit_code == 0
+    # some of its runs failed, and the table has all
+    assert CliRunner().invoke(app, [*words, "--trust"]).exit_code == 3
     with (code / "out.csv").open() as file:
         rows = {float(row["duration"]): row for row in csv.DictReader(file)}
     assert rows[0.1]["status"] == "done"
@@ -853,7 +854,7 @@ def test_a_sweep_of_a_program_needs_trust_and_tells_of_runs_that_fail(code, monk
 def test_the_station_that_ships_is_told_as_json():
     words = ["run", "bluerov2_heavy_station", "--duration", "0.3", "--no-record", "--json"]
     told = CliRunner().invoke(app, words)
-    assert told.exit_code == 3, told.output
+    assert told.exit_code == 0, told.output
     assert json.loads(told.stdout)["updates_at_limits"] == 0
 
 

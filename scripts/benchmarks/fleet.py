@@ -82,7 +82,6 @@ def rows(results: Results) -> Iterator[Row]:
             f"{rate:,.0f} vessel steps/s",
             rate * TIMESTEP / vessels,
             "of real time",
-            first=threads == THREADS[-1],
         )
 
 

@@ -70,7 +70,7 @@ def step_rows(results: Results) -> Iterator[Row]:
         scene, _, pressure = name.partition(", ")
         what = f"step of `{scene}`" + (f", {pressure}" if pressure else "")
         factor = step["with"] / step["without"]
-        first = not pressure
+        first = name == "auv_waves"
         yield Row(what, describe_time(step["with"]), factor, "as long as the engine alone", first)
 
 
@@ -116,4 +116,4 @@ def batch_rows(results: Results) -> Iterator[Row]:
     """Each scene on two threads."""
     for name, factors in results.items():
         what = f"{COPIES} of `{name}` in a batch on two threads"
-        yield Row(what, "", factors["2 threads"], "of real time", name == "auv_waves")
+        yield Row(what, "", factors["2 threads"], "of real time")
