@@ -22,7 +22,8 @@ time but for batches, runs and first steps:
 - build: the water of a model whose meshes are new, or were seen before;
 - starting: an import, the help, a first step, and compiling for it;
 - statics: hydrostatics against Capytaine's, equilibria, righting arms and whole inspections;
-- memory: what each data of a model takes with water and without, and what steps take.
+- memory: what each data of a model takes with water and without, and what steps take;
+- cluster: a sweep on Ray on one core and two, what is moved, and what comes of it on 10,000 cores.
 
 --compare sets a run beside a saved one. What seems more than 5 % slower is measured again, up to
 twice, and the best of all counts; what stays slower is flagged, and the exit status is 1. Compare
@@ -47,6 +48,7 @@ import llvmlite.binding as llvm
 from benchmarks import (
     building,
     caches,
+    cluster,
     comparison,
     fleet,
     memory,
@@ -103,6 +105,7 @@ BENCHMARKS = {
     "starting": Benchmark(starting.measure, starting.describe, starting.rows),
     "statics": Benchmark(statics.measure, statics.describe, statics.rows),
     "memory": Benchmark(memory.measure, memory.describe, memory.rows),
+    "cluster": Benchmark(cluster.measure, cluster.describe),
 }
 """The benchmarks by name, in the order in which they run and the pages show them."""
 ROWS = {name: benchmark.rows for name, benchmark in BENCHMARKS.items()}
