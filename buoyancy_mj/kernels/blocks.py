@@ -253,15 +253,15 @@ def _set_heads(layout, line, solid, room, z, still, tide):
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _guess(z, eta, fall, depth):
-    """`still_water.still_height`, which goes on above the surface."""
+    """`still_water.still_height`, which goes on above the surface and below the bottom."""
     below, left = z - eta, 1.0
     if depth < math.inf:
-        below = max(depth * below / (depth + eta), -depth) if depth + eta > 0.0 else -depth
+        below *= depth / (depth + eta) if depth + eta > 0.0 else 1.0
         left = 1.0 + below / depth
     # a fraction in place of e^-x
     x = max(-fall * below, 0.0)
     left /= 1.0 + x * (1.0 + x * (0.5 + x * (1.0 / 6.0)))
-    return below if below >= 0.0 else min(max(z - eta * left, -depth), 0.0)
+    return below if below >= 0.0 else min(z - eta * left, 0.0)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -12,7 +12,7 @@ from numba import int64
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import tree
-from buoyancy_mj.kernels.blocks import fill, find_block, is_known, quadratic_in
+from buoyancy_mj.kernels.blocks import DEPTH, fill, find_block, is_known, quadratic_in
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.expansions import add_node, find_quadratic
 from buoyancy_mj.kernels.halving import CORNER, PART, split
@@ -142,7 +142,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             most = typical[int(min(top * most, DEPTHS - 1.0))]
         small = wet and not dry and most * size <= SMALL and size > 0.0
         if small:
-            if setting.few:
+            if setting.few or z - size < -sizes[DEPTH]:
                 quadratic = find_quadratic(rows, x, y, z, size / math.sqrt(3.0), time, dynamic)
             else:
                 b, mx, my, mz = find_block(sizes, x, y, z)

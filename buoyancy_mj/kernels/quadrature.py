@@ -8,7 +8,7 @@ degree 5 of Radon (1948).
 import math
 from typing import NamedTuple
 
-from buoyancy_mj.kernels.blocks import fill, find_block, head_in, is_known
+from buoyancy_mj.kernels.blocks import DEPTH, fill, find_block, head_in, is_known
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
@@ -170,7 +170,7 @@ def sum_points(waves, sea, blocks, store, setting, points, count, sums):
     ox, oy, oz = setting.origin
     for n in range(count):
         x, y, z = points[0, n], points[1, n], points[2, n]
-        if setting.few:
+        if setting.few or z < -layout[DEPTH]:
             head = wave_head(waves, x, y, z, time, setting.dynamic)
         else:
             b, mx, my, mz = find_block(layout, x, y, z)

@@ -24,7 +24,7 @@ from buoyancy_mj.kernels.still_water import decay, seabed
 from buoyancy_mj.kernels.tiles import Tiles
 from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, PHASE
 
-ACCURACY = 3e-6
+ACCURACY = 1e-6
 """The part of a hull's radius that tiles may leave out of the elevation in all."""
 FEW = 4
 """Waves up to which they are summed one by one."""
@@ -155,12 +155,12 @@ def lay_blocks(waves: NDArray[np.float64], radii: Sequence[float]) -> Blocks:
 
     Args:
         waves: of the sea (w, 7), see `kernels.waves`.
-        radii: of the hulls (h,) [m]; blocks are no larger than the largest.
+        radii: of the hulls (h,) [m]; blocks are no larger than three fourths of the largest.
     """
     rows = waves[_order(waves)]
     square, k = rows[:, AMPLITUDE] ** 2, np.hypot(rows[:, KX], rows[:, KY])
     steep = ((square @ k**10) / square.sum()) ** 0.1 if square.any() else 0.0
-    reach = min(BLOCK / steep if steep else math.inf, max(radii))
+    reach = min(BLOCK / steep if steep else math.inf, 0.5 * max(radii))
     bottoms = np.array([seabed.py_func(*pair) for pair in zip(k, rows[:, DEPTH], strict=True)])
     tanh = (1.0 - bottoms) / (1.0 + bottoms)
     mean = float(square @ k / square.sum()) if square.any() else 0.0
