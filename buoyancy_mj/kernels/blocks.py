@@ -294,35 +294,35 @@ def head_in(layout, found, b, x, y, z):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def quadratic_in(layout, found, b, x, y, z):
-    """The head of a block about a place, as a quadratic.
+def quadratic_in(layout, found, b, x, y, z, s):
+    """The head of a block about a place, as a quadratic, by its values at 13 places up to s away.
 
     Returns its value, its gradient (3), and its coefficients of x^2, y^2, z^2, x y, x z and y z.
     """
-    scale = 1.0 / layout[REACH]
-    u, v = (x - found[b, MIDDLE_X]) * scale, (y - found[b, MIDDLE_Y]) * scale
-    w = (z - found[b, MIDDLE_Z]) * scale
-    i = HEAD + NUMBERS
-    t = gx = gy = gz = xx = yy = zz = xy = xz = yz = 0.0
-    for p in range(DEGREE, -1, -1):
-        s = sx = sy = sxx = syy = sxy = 0.0
-        for m in range(DEGREE - p, -1, -1):
-            r = ry = ryy = 0.0
-            for _ in range(DEGREE - p - m + 1):
-                i -= 1
-                ryy = ryy * v + ry
-                ry = ry * v + r
-                r = r * v + found[b, i]
-            sxx = sxx * u + sx
-            sxy = sxy * u + sy
-            sx, sy, syy = sx * u + s, sy * u + ry, syy * u + ryy
-            s = s * u + r
-        zz = zz * w + gz
-        xz, yz, gz = xz * w + gx, yz * w + gy, gz * w + t
-        xx, yy, xy = xx * w + sxx, yy * w + syy, xy * w + sxy
-        gx, gy, t = gx * w + sx, gy * w + sy, t * w + s
-    square = scale * scale
+    p = head_in(layout, found, b, x, y, z)
+    px, nx = head_in(layout, found, b, x + s, y, z), head_in(layout, found, b, x - s, y, z)
+    py, ny = head_in(layout, found, b, x, y + s, z), head_in(layout, found, b, x, y - s, z)
+    pz, nz = head_in(layout, found, b, x, y, z + s), head_in(layout, found, b, x, y, z - s)
+    xy = head_in(layout, found, b, x + s, y + s, z) + head_in(layout, found, b, x - s, y - s, z)
+    xz = head_in(layout, found, b, x + s, y, z + s) + head_in(layout, found, b, x - s, y, z - s)
+    yz = head_in(layout, found, b, x, y + s, z + s) + head_in(layout, found, b, x, y - s, z - s)
+    return join_values(s, p, (px, nx, py, ny, pz, nz), (xy, xz, yz))
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
+def join_values(s, p, along, across):
+    """A quadratic from its value p, those s away along each axis, and sums of two across."""
+    px, nx, py, ny, pz, nz = along
+    xy, xz, yz = across
+    step, square = 0.5 / s, 0.5 / (s * s)
     return (
-        t, (gx * scale, gy * scale, gz * scale),
-        (xx * square, yy * square, zz * square, xy * square, xz * square, yz * square),
+        p, (step * (px - nx), step * (py - ny), step * (pz - nz)),
+        (
+            square * (px + nx - 2.0 * p),
+            square * (py + ny - 2.0 * p),
+            square * (pz + nz - 2.0 * p),
+            square * (xy - px - nx - py - ny + 2.0 * p),
+            square * (xz - px - nx - pz - nz + 2.0 * p),
+            square * (yz - py - ny - pz - nz + 2.0 * p),
+        ),
     )  # fmt: skip

@@ -1,6 +1,7 @@
 """Pressure over a node of the tree, by a quadratic about its middle and the moments of its area."""
 
 from buoyancy_mj.kernels import tree
+from buoyancy_mj.kernels.blocks import join_values
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import rotate_back
 from buoyancy_mj.kernels.waves import head
@@ -19,18 +20,7 @@ def find_quadratic(waves, x, y, z, s, time, dynamic):
     xy = head(waves, x + s, y + s, z, time, dynamic) + head(waves, x - s, y - s, z, time, dynamic)
     xz = head(waves, x + s, y, z + s, time, dynamic) + head(waves, x - s, y, z - s, time, dynamic)
     yz = head(waves, x, y + s, z + s, time, dynamic) + head(waves, x, y - s, z - s, time, dynamic)
-    step, square = 0.5 / s, 0.5 / (s * s)
-    return (
-        p, (step * (px - nx), step * (py - ny), step * (pz - nz)),
-        (
-            square * (px + nx - 2.0 * p),
-            square * (py + ny - 2.0 * p),
-            square * (pz + nz - 2.0 * p),
-            square * (xy - px - nx - py - ny + 2.0 * p),
-            square * (xz - px - nx - pz - nz + 2.0 * p),
-            square * (yz - py - ny - pz - nz + 2.0 * p),
-        ),
-    )  # fmt: skip
+    return join_values(s, p, (px, nx, py, ny, pz, nz), (xy, xz, yz))
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)

@@ -142,13 +142,14 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             most = typical[int(min(top * most, DEPTHS - 1.0))]
         small = wet and not dry and most * size <= SMALL and size > 0.0
         if small:
+            near = size / math.sqrt(3.0)
             if setting.few or z - size < -sizes[DEPTH]:
-                quadratic = find_quadratic(rows, x, y, z, size / math.sqrt(3.0), time, dynamic)
+                quadratic = find_quadratic(rows, x, y, z, near, time, dynamic)
             else:
                 b, mx, my, mz = find_block(sizes, x, y, z)
                 if not is_known(known, b, mx, my, mz, time):
                     fill(waves, blocks, store, b, mx, my, mz, time, dynamic)
-                quadratic = quadratic_in(sizes, known, b, x, y, z)
+                quadratic = quadratic_in(sizes, known, b, x, y, z, near)
             add_node(moments, i, (b0, b1, b2), r, quadratic, turned)
         elif not dry and tree.is_leaf(spans, i):
             first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
