@@ -354,8 +354,7 @@ def test_waves_gathered_and_waves_one_by_one_push_alike(depth):
                 packed.press(np.array([[0.1, 0.2, z]]), turn, time, dynamic=True)[0]
                 for packed in rows
             )
-            # in blocks it is off by a thousandth of what the waves add, which is 0.01 here
-            assert b == pytest.approx(a, abs=1e-5)
+            assert b == pytest.approx(a, abs=1e-6)
 
 
 # as text, and bad input
