@@ -8,7 +8,7 @@ degree 5 of Radon (1948).
 import math
 from typing import NamedTuple
 
-from buoyancy_mj.kernels.blocks import DEPTH, fill, find_block, head_in, is_known
+from buoyancy_mj.kernels.blocks import DEPTH, head_at
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
@@ -166,17 +166,14 @@ def sum_points(waves, sea, blocks, store, setting, points, count, sums):
     Returns:
         0, for none waits any more.
     """
-    layout, found, time = blocks.layout, store.found, setting.time
+    layout, time = blocks.layout, setting.time
     ox, oy, oz = setting.origin
     for n in range(count):
         x, y, z = points[0, n], points[1, n], points[2, n]
         if setting.few or z < -layout[DEPTH]:
             head = wave_head(waves, x, y, z, time, setting.dynamic)
         else:
-            b, mx, my, mz = find_block(layout, x, y, z)
-            if not is_known(found, b, mx, my, mz, time):
-                fill(sea, blocks, store, b, mx, my, mz, time, setting.dynamic)
-            head = head_in(layout, found, b, x, y, z)
+            head = head_at(sea, blocks, store, x, y, z, time, setting.dynamic)
         fx, fy, fz = head * points[3, n], head * points[4, n], head * points[5, n]
         x, y, z = x - ox, y - oy, z - oz
         sums[0] += fx

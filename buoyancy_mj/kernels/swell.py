@@ -188,13 +188,6 @@ def over_node(rest, r, layout, waves, found, phases, near, away):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def depth_under(plane, point):
-    """Depth under the plane of a point in the hull's frame."""
-    g0, g1, g2 = plane.gradient
-    return plane.origin_depth + g0 * point[0] + g1 * point[1] + g2 * point[2]
-
-
-@njit(cache=True, error_model="numpy", inline="always")
 def depth_away(plane, away):
     """Depth under the plane of a point that is `away` from the middle of the hull, in its frame."""
     g0, g1, g2 = plane.gradient
