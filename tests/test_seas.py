@@ -19,7 +19,7 @@ from buoyancy_mj import (
     Water,
     WaterError,
 )
-from buoyancy_mj.kernels import blocks, tiles
+from buoyancy_mj.kernels import heads, tiles
 from buoyancy_mj.kernels import waves as kernels
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.scratch import new_scratches
@@ -305,17 +305,29 @@ def test_blocks_give_the_pressure_of_waves(depth):
     rows = Water(waves=[wave(depth) for wave in MIXED]).rows
     sea = conform(sea_tiles.lay_tiles(rows, [0.8]))
     water = conform(sea_tiles.lay_blocks(rows, [0.8]))
-    store = new_scratches(1, 3, len(rows))[0].pressure.store
-    rng, off, heads = np.random.default_rng(1), [], []
-    for x, y, z in rng.uniform([-2.0, -2.0, -1.0], [2.0, 2.0, 0.3], (600, 3)):
-        if z < naive.elevation(rows, x, y, 0.7):
-            exact = kernels.head(rows, x, y, z, 0.7, True)
-            off.append(blocks.head_at(sea.waves, water, store, x, y, z, 0.7, True) - exact)
-            heads.append(exact + z)
-    # beside what waves add to still water, whose square makes up the most of what is left
-    assert np.std(off) < 6e-3 * np.std(heads)
-    assert abs(np.mean(off)) < 2e-3 * np.std(heads)
+    places = np.zeros((4, 600))
+    places[:3] = np.random.default_rng(1).uniform([-2.0, -2.0, -1.0], [2.0, 2.0, 0.3], (600, 3)).T
+    exact = np.array([kernels.head(rows, *place, 0.7, True) for place in places[:3].T])
+    eta = np.array([naive.elevation(rows, x, y, 0.7) for x, y in places[:2].T])
+    wet = places[2] < eta
+
+    # beside what waves add to still water
+    (scratch,) = new_scratches(1, 3, len(rows))
+    around = heads.Sea(sea, scratch.cut.store, water, scratch.pressure.store, 0.7, True)
+    heads.set_heads(around, places, 600)
+    off, added = (places[3] - exact)[wet], (exact + places[2])[wet]
+    assert off.std() < 6e-3 * added.std()
+    assert abs(off.mean()) < 2e-3 * added.std()
     assert np.abs(off).max() < 1e-2 * 0.6
+
+    # hydrostatic under their surface, by tiles
+    heads.set_heads(around._replace(dynamic=False), places, 600)
+    assert places[3] == pytest.approx(eta - places[2], abs=sea_tiles.ACCURACY * 0.8)
+
+    # where the waves are summed one by one
+    sea.layout[tiles.HELD] = 0.0
+    heads.set_heads(around, places, 600)
+    assert places[3] == pytest.approx(exact, abs=1e-12)
 
 
 @pytest.mark.parametrize("components", [4, 5, 64, 200])

@@ -1,41 +1,104 @@
-"""Pressure over a node of the tree, by a quadratic about its middle and the moments of its area."""
+"""Pressure over a node of the tree, by a quadratic about its middle and the moments of its area.
+
+The quadratic is known by the head at 13 places in the node. Several nodes wait, so that their heads
+are found together.
+"""
+
+import math
 
 from buoyancy_mj.kernels import tree
-from buoyancy_mj.kernels.blocks import join_values
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.vectors import rotate_back
-from buoyancy_mj.kernels.waves import head
+from buoyancy_mj.kernels.heads import HEAD, set_heads
+from buoyancy_mj.kernels.vectors import rotate_back, triple
+
+_STENCIL = (
+    (0.0, 0.0, 0.0),
+    (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0),
+    (0.0, 1.0, 0.0), (0.0, -1.0, 0.0),
+    (0.0, 0.0, 1.0), (0.0, 0.0, -1.0),
+    (1.0, 1.0, 0.0), (-1.0, -1.0, 0.0),
+    (1.0, 0.0, 1.0), (-1.0, 0.0, -1.0),
+    (0.0, 1.0, 1.0), (0.0, -1.0, -1.0),
+)  # fmt: skip
+"""Places about the middle of a node at which the head is found, in the world's axes."""
+SIZE = len(_STENCIL)
+"""How many they are."""
+NODES = 4
+"""Nodes that may wait."""
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def find_quadratic(waves, x, y, z, s, time, dynamic):
-    """The head of waves about a place as a quadratic, by its values at 13 places up to s away.
-
-    Returns its value, its gradient (3), and its coefficients of x^2, y^2, z^2, x y, x z and y z.
-    """
-    p = head(waves, x, y, z, time, dynamic)
-    px, nx = head(waves, x + s, y, z, time, dynamic), head(waves, x - s, y, z, time, dynamic)
-    py, ny = head(waves, x, y + s, z, time, dynamic), head(waves, x, y - s, z, time, dynamic)
-    pz, nz = head(waves, x, y, z + s, time, dynamic), head(waves, x, y, z - s, time, dynamic)
-    xy = head(waves, x + s, y + s, z, time, dynamic) + head(waves, x - s, y - s, z, time, dynamic)
-    xz = head(waves, x + s, y, z + s, time, dynamic) + head(waves, x - s, y, z - s, time, dynamic)
-    yz = head(waves, x, y + s, z + s, time, dynamic) + head(waves, x, y - s, z - s, time, dynamic)
-    return join_values(s, p, (px, nx, py, ny, pz, nz), (xy, xz, yz))
-
-
-@njit(cache=True, error_model="numpy", _nrt=False)
-def add_node(moments, node, middle, r, quadratic, sums):
-    """Add force and torque of the head over a node.
+def let_wait(asked, nodes, count, node, middle, size):
+    """Let a wet node wait as the one behind `count` others.
 
     Args:
-        moments: of all nodes.
+        asked: its places, as rows of `heads.set_heads` (4, NODES * SIZE); written.
+        nodes: the nodes that wait (NODES,); written.
+        count: how many wait.
         node: the node.
-        middle: of its box, in the frame of the hull.
+        middle: of its box, from the still level.
+        size: half the diagonal of its box.
+    """
+    s = size / math.sqrt(3.0)
+    for n in range(SIZE):
+        for c in range(3):
+            asked[c, count * SIZE + n] = middle[c] + s * _STENCIL[n][c]
+    nodes[count] = node
+
+
+@njit(cache=True, error_model="numpy", _nrt=False)
+def sum_nodes(sea, asked, nodes, count, moments, boxes, r, sums):
+    """Add force and torque of all nodes that wait.
+
+    Args:
+        sea: a `heads.Sea`.
+        asked: see `let_wait`.
+        nodes: see `let_wait`.
+        count: how many wait.
+        moments: of all nodes.
+        boxes: of all nodes.
         r: world_from_frame.
-        quadratic: the head about its middle in the world's axes, see `blocks.quadratic_in`.
         sums: force over rho g [m^3], and torque about the origin over rho g [m^4] (6,), in the
             hull's frame; written.
     """
+    set_heads(sea, asked, count * SIZE)
+    for n in range(count):
+        node = nodes[n]
+        e0, e1, e2 = triple(boxes, node, tree.HALF)
+        s = math.sqrt((e0 * e0 + e1 * e1 + e2 * e2) / 3.0)
+        quadratic = _find_quadratic(asked, n * SIZE, s)
+        _add(moments, node, triple(boxes, node, tree.MIDDLE), r, quadratic, sums)
+
+
+@njit(cache=True, error_model="numpy", _nrt=False)
+def _find_quadratic(asked, first, s):
+    """The head about the middle of a node: its value, its gradient (3), and coefficients.
+
+    These are of x^2, y^2, z^2, x y, x z and y z. The heads stand from column `first` on.
+    """
+    p = asked[HEAD, first]
+    px, nx, py = asked[HEAD, first + 1], asked[HEAD, first + 2], asked[HEAD, first + 3]
+    ny, pz, nz = asked[HEAD, first + 4], asked[HEAD, first + 5], asked[HEAD, first + 6]
+    xy = asked[HEAD, first + 7] + asked[HEAD, first + 8]
+    xz = asked[HEAD, first + 9] + asked[HEAD, first + 10]
+    yz = asked[HEAD, first + 11] + asked[HEAD, first + 12]
+    step, square = 0.5 / s, 0.5 / (s * s)
+    return (
+        p, (step * (px - nx), step * (py - ny), step * (pz - nz)),
+        (
+            square * (px + nx - 2.0 * p),
+            square * (py + ny - 2.0 * p),
+            square * (pz + nz - 2.0 * p),
+            square * (xy - px - nx - py - ny + 2.0 * p),
+            square * (xz - px - nx - pz - nz + 2.0 * p),
+            square * (yz - py - ny - pz - nz + 2.0 * p),
+        ),
+    )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy", _nrt=False)
+def _add(moments, node, middle, r, quadratic, sums):
+    """Add force and torque of a quadratic head over a node."""
     p, slope, second = quadratic
     g = rotate_back(r, slope[0], slope[1], slope[2])
     h = _turn_back(r, second)

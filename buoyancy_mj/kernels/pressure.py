@@ -12,14 +12,14 @@ from numba import int64
 from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import tree
-from buoyancy_mj.kernels.blocks import DEPTH, fill, find_block, is_known, quadratic_in
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.expansions import add_node, find_quadratic
+from buoyancy_mj.kernels.expansions import NODES, let_wait, sum_nodes
 from buoyancy_mj.kernels.halving import CORNER, PART, split
+from buoyancy_mj.kernels.heads import Sea
 from buoyancy_mj.kernels.hulls import ALLOWED, WHOLE_HALF, WHOLE_MIDDLE
-from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, Setting, add_wet_part, sum_points
+from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
-from buoyancy_mj.kernels.tiles import HELD, swing, tangent_at
+from buoyancy_mj.kernels.tiles import swing, tangent_at
 from buoyancy_mj.kernels.vectors import place, rotate, scale, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 
@@ -69,6 +69,7 @@ def press_hulls(
     # triangles in the world, nodes in the frame; both about its origin
     sums, turned = scratch.pressure.sums, scratch.pressure.turned
     dynamic = sea.pressure == PressureModel.froude_krylov
+    around = Sea(hulls.tiles, store, hulls.blocks, scratch.pressure.store, time, dynamic)
     for h in range(first, last):
         origin, r = positions[frames[h]], rotations[frames[h]]
         out[h, :] = 0.0
@@ -84,10 +85,8 @@ def press_hulls(
             out[h, :] = 0.0 if depth < math.inf else math.nan
             continue
 
-        few = layout[HELD] == 0.0
-        setting = Setting((origin[0], origin[1], origin[2] - level), time, dynamic, few)
         sums[:], turned[:] = 0.0, 0.0
-        _walk(hulls, h, sea.waves, setting, r, curvature, scratch)
+        _walk(hulls, h, around, (origin[0], origin[1], origin[2] - level), r, curvature, scratch)
 
         # the sum, outward
         fx, fy, fz = rotate(r, turned[0], turned[1], turned[2])
@@ -98,28 +97,29 @@ def press_hulls(
 
 @njit(cache=True, error_model="numpy", _nrt=False)
 def _walk(  # noqa: C901 (a call for each node would cost more than what it does)
-    hulls, h, rows, setting, r, curvature, scratch
+    hulls, h, sea, origin, r, curvature, scratch
 ):
-    """Add nodes and triangles of a hull; `curvature` is a bound of the surface's over it."""
+    """Add nodes and triangles of a hull; `curvature` is a bound of the surface's over it.
+
+    The sea is a `heads.Sea`, and the origin that of the hull's frame, from the still level.
+    """
     typical, spans, boxes, moments = hulls.typical, hulls.spans, hulls.boxes, hulls.moments
     vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
-    layout, waves, blocks = hulls.tiles.layout, hulls.tiles.waves, hulls.blocks
-    found, phases, depths = scratch.cut.store.found, scratch.cut.store.phases, scratch.cut.seen
-    store, points = scratch.pressure.store, scratch.pressure.points
+    layout, waves, time, dynamic = sea.tiles.layout, sea.tiles.waves, sea.time, sea.dynamic
+    found, phases, depths = sea.known_tiles.found, sea.known_tiles.phases, scratch.cut.seen
+    points, asked, nodes = scratch.pressure.points, scratch.pressure.asked, scratch.pressure.nodes
     sums, turned = scratch.pressure.sums, scratch.pressure.turned
-    known, sizes = store.found, blocks.layout
-    time, dynamic = setting.time, setting.dynamic
     stack, allowed = scratch.cut.stack, hulls.whole[h, ALLOWED]
     edges, most_bent = hulls.edges, 0.125 * curvature
     # int64: a literal 0 would have all that it is given to compiled twice
-    count = int64(0)
+    count = many = int64(0)
     i, wet_until = hulls.nodes[h], int64(0)
     end = spans[i, tree.BEHIND]
     while i < end:
         b0, b1, b2 = triple(boxes, i, tree.MIDDLE)
         e0, e1, e2 = triple(boxes, i, tree.HALF)
         size = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-        x, y, z = place(setting.origin, r, b0, b1, b2)
+        x, y, z = place(origin, r, b0, b1, b2)
 
         # the depth of the middle of the box, and how much less or more any point of it has
         dry, wet = False, i < wet_until
@@ -142,15 +142,11 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             most = typical[int(min(top * most, DEPTHS - 1.0))]
         small = wet and not dry and most * size <= SMALL and size > 0.0
         if small:
-            near = size / math.sqrt(3.0)
-            if setting.few or z - size < -sizes[DEPTH]:
-                quadratic = find_quadratic(rows, x, y, z, near, time, dynamic)
-            else:
-                b, mx, my, mz = find_block(sizes, x, y, z)
-                if not is_known(known, b, mx, my, mz, time):
-                    fill(waves, blocks, store, b, mx, my, mz, time, dynamic)
-                quadratic = quadratic_in(sizes, known, b, x, y, z, near)
-            add_node(moments, i, (b0, b1, b2), r, quadratic, turned)
+            if many == NODES:
+                sum_nodes(sea, asked, nodes, many, moments, boxes, r, turned)
+                many = int64(0)
+            let_wait(asked, nodes, many, i, (x, y, z), size)
+            many += 1
         elif not dry and tree.is_leaf(spans, i):
             first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
             rough = most_bent * edges[i] * edges[i] > allowed
@@ -159,7 +155,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             for n in range(last - first):
                 depths[0, n] = 1.0
                 if not wet:
-                    x, y, z = _corner(vertices, first + n, r, setting)
+                    x, y, z = _corner(vertices, first + n, r, origin)
                     eta, _, _ = tangent_at(layout, waves, found, phases, x, y, time)
                     depths[0, n] = eta - z
 
@@ -170,10 +166,10 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 if dj <= 0.0 and dk <= 0.0 and do <= 0.0 and not rough:
                     continue
                 if count > PLACES - TRIANGLE:
-                    count = sum_points(rows, waves, blocks, store, setting, points, count, sums)
-                p = _corner(vertices, j, r, setting)
-                q = _corner(vertices, k, r, setting)
-                s = _corner(vertices, o, r, setting)
+                    count = sum_points(sea, points, count, origin, sums)
+                p = _corner(vertices, j, r, origin)
+                q = _corner(vertices, k, r, origin)
+                s = _corner(vertices, o, r, origin)
                 area = rotate(r, areas[f, 0], areas[f, 1], areas[f, 2])
                 if not rough or wet:
                     count = add_wet_part(points, count, p, q, s, dj, dk, do, area, most, sums)
@@ -196,9 +192,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                     dj, dk, do = stack[top, 3], stack[top, CORNER + 3], stack[top, 2 * CORNER + 3]
                     if dj > 0.0 or dk > 0.0 or do > 0.0:
                         if count > PLACES - TRIANGLE:
-                            count = sum_points(
-                                rows, waves, blocks, store, setting, points, count, sums
-                            )
+                            count = sum_points(sea, points, count, origin, sums)
                         p, q, s = (
                             _corner_of(stack, top, 0),
                             _corner_of(stack, top, 1),
@@ -208,14 +202,15 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                         count = add_wet_part(points, count, p, q, s, dj, dk, do, part, most, sums)
                     top -= 1
         i = tree.node_after(spans, i, dry or small)
-    sum_points(rows, waves, blocks, store, setting, points, count, sums)
+    sum_points(sea, points, count, origin, sums)
+    sum_nodes(sea, asked, nodes, many, moments, boxes, r, turned)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _corner(vertices, n, r, setting):
+def _corner(vertices, n, r, origin):
     """A vertex in the world, from the still level."""
     x, y, z = triple(vertices, n, 0)
-    return place(setting.origin, r, x, y, z)
+    return place(origin, r, x, y, z)
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -6,13 +6,11 @@ degree 5 of Radon (1948).
 """
 
 import math
-from typing import NamedTuple
 
-from buoyancy_mj.kernels.blocks import DEPTH, head_at
 from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.heads import HEAD, set_heads
 from buoyancy_mj.kernels.triangles import lone_corner, turn
 from buoyancy_mj.kernels.vectors import between, distance, scale
-from buoyancy_mj.kernels.waves import head as wave_head
 
 POINT = 0.1
 """Longest edge of a triangle, times the wave number, for one point: to POINT^2 / 36."""
@@ -26,6 +24,8 @@ TRIANGLE = 2 * 7 * PIECES * PIECES
 """Points of the wet part of a triangle, at most."""
 PLACES = 2 * TRIANGLE
 """Points that may wait."""
+AREA = HEAD + 1
+"""First row of their vector areas, behind those of `heads.set_heads`."""
 _ROOT = math.sqrt(15.0)
 _A, _B = (6.0 - _ROOT) / 21.0, (6.0 + _ROOT) / 21.0
 _RULE = (
@@ -40,26 +40,13 @@ _RULE = (
 """Barycentric coordinates of the first and the second corner, and weights."""
 
 
-class Setting(NamedTuple):
-    """How pressure is summed over one hull."""
-
-    origin: tuple[float, float, float]
-    """Of the hull's frame, from the still level [m]."""
-    time: float
-    """[s]."""
-    dynamic: bool
-    """Whether the pressure is that of linear waves, or hydrostatic under their surface."""
-    few: bool
-    """Whether there are so few waves that they are summed up at each point."""
-
-
 @njit(cache=True, error_model="numpy", _nrt=False)
 def add_wet_part(points, count, p, q, o, dp, dq, do, area, most, sums):
     """Add the points of the wet part of a triangle with depths at its corners.
 
     Args:
-        points: places from the still level (3, PLACES) and vector areas (3, PLACES) of points that
-            wait to be summed; written.
+        points: places, as rows of `heads.set_heads` (4, PLACES), and vector areas (3, PLACES) of
+            points that wait to be summed; written.
         count: how many wait; there is room for `TRIANGLE` more.
         p: a corner.
         q: the next one.
@@ -146,36 +133,29 @@ def _put(points, n, place, share, area):
     """Let a point wait, with a share of an area."""
     for c in range(3):
         points[c, n] = place[c]
-        points[3 + c, n] = share * area[c]
+        points[AREA + c, n] = share * area[c]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def sum_points(waves, sea, blocks, store, setting, points, count, sums):
+def sum_points(sea, points, count, origin, sums):
     """Add force and torque about the origin of the pressure at all points that wait.
 
     Args:
-        waves: of the sea, see `kernels.waves`; where they are few the pressure is theirs itself.
-        sea: `tiles.Tiles.waves`.
-        blocks: `blocks.Blocks`.
-        store: a `blocks.BlockStore`.
-        setting: a `Setting`.
+        sea: a `heads.Sea`.
         points: see `add_wet_part`.
         count: how many wait.
+        origin: of the hull's frame, from the still level.
         sums: see `add_wet_part`; written.
 
     Returns:
         0, for none waits any more.
     """
-    layout, time = blocks.layout, setting.time
-    ox, oy, oz = setting.origin
+    set_heads(sea, points, count)
+    ox, oy, oz = origin
     for n in range(count):
-        x, y, z = points[0, n], points[1, n], points[2, n]
-        if setting.few or z < -layout[DEPTH]:
-            head = wave_head(waves, x, y, z, time, setting.dynamic)
-        else:
-            head = head_at(sea, blocks, store, x, y, z, time, setting.dynamic)
-        fx, fy, fz = head * points[3, n], head * points[4, n], head * points[5, n]
-        x, y, z = x - ox, y - oy, z - oz
+        head = points[HEAD, n]
+        fx, fy, fz = head * points[AREA, n], head * points[AREA + 1, n], head * points[AREA + 2, n]
+        x, y, z = points[0, n] - ox, points[1, n] - oy, points[2, n] - oz
         sums[0] += fx
         sums[1] += fy
         sums[2] += fz

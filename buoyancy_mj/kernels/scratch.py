@@ -6,9 +6,11 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from buoyancy_mj.kernels import cuts, halving, swell
-from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, fields
+from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, Words, fields
 from buoyancy_mj.kernels.blocks import BlockStore
-from buoyancy_mj.kernels.quadrature import PLACES
+from buoyancy_mj.kernels.expansions import NODES, SIZE
+from buoyancy_mj.kernels.heads import HEAD
+from buoyancy_mj.kernels.quadrature import AREA, PLACES
 from buoyancy_mj.kernels.tiles import TileStore
 
 
@@ -34,8 +36,12 @@ class PressureScratch(NamedTuple):
 
     store: BlockStore
     """The blocks of the sea that are known."""
-    points: Annotated[Doubles, (6, PLACES)]
+    points: Annotated[Doubles, (AREA + 3, PLACES)]
     """The points of `quadrature`."""
+    asked: Annotated[Doubles, (HEAD + 1, NODES * SIZE)]
+    """The places of `expansions`."""
+    nodes: Annotated[Words, (NODES,)]
+    """The nodes of `expansions`."""
     sums: Annotated[Doubles, (6,)]
     """Force and torque on triangles."""
     turned: Annotated[Doubles, (6,)]
