@@ -48,11 +48,11 @@ _FOUR = (
 # columns of `cuts` behind the ends: places, the rest there, four integrals, and scratch
 _PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP, _ROW, _TOTAL = range(4 * MOST, ROOM, MOST)
 PANEL = 2.0
-"""Longest angle [rad] over which four points outward are enough, to 1e-6 of the amplitude."""
+"""Longest angle [rad] over which four points across are enough, to 2e-5 of the amplitude."""
 PANELS = 256
 """Most of them: no ripple is resolved that is shorter than a hundredth of the hull."""
 SHORT = 0.5
-"""Longest angle [rad] over which three points outward are enough, to 1e-6 of the amplitude."""
+"""Longest angle [rad] over which three points across are enough, to 1e-6 of the amplitude."""
 
 
 class Plane(NamedTuple):
@@ -84,8 +84,10 @@ class Rest(NamedTuple):
     """Whether tiles hold any wave."""
     doubled: int
     """How often angles between near waves and hull are halved, see `series.bend`."""
+    ahead: tuple[float, float]
+    """The direction in which the hull is longest, along x and y of the world."""
     panels: int
-    """Into how many panels the way from the middle to a cut is divided."""
+    """Into how many panels the way across it is divided, from the axis of the hull to a cut."""
     points: int
     """How many points each of them has."""
     place: tuple[float, float]
@@ -122,12 +124,32 @@ def approach(level, layout, waves, found, phases, origin, r, whole, h, time, nea
     gx, gy, _ = rotate(r, s0, s1, s2)
     plane = Plane((c0, c1, c2), d, still, (g0, g1, g2), height, (gx, gy))
 
-    # the rest
-    smooth, turn = int(layout[tiles.HELD]) > 0, layout[tiles.TURNING] * radius
+    # the rest, with the way across the hull that is divided into panels
+    ahead, width = _look_along(r, (e0, e1, e2))
+    turn = layout[tiles.TURNING] * width
     panels, points = min(max(1, math.ceil(turn / PANEL)), PANELS), 3 if turn <= SHORT else 4
     return plane, Rest(
-        count, smooth, doublings(change), panels, points, (x, y), touch, (eta, gx, gy), time
-    )
+        count, int(layout[tiles.HELD]) > 0, doublings(change), ahead, panels, points, (x, y),
+        touch, (eta, gx, gy), time,
+    )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy", _nrt=False)
+def _look_along(r, half):
+    """The direction in which a box with half sides (3) is longest, seen from above.
+
+    It is along x and y of the world. Also how far the box extends across it [m].
+    """
+    ax, ay, longest = 1.0, 0.0, 0.0
+    for k in range(3):
+        length = half[k] * math.hypot(r[k], r[3 + k])
+        if length > longest:
+            longest = length
+            ax, ay = half[k] * r[k] / length, half[k] * r[3 + k] / length
+    width = 0.0
+    for k in range(3):
+        width += half[k] * abs(ax * r[3 + k] - ay * r[k])
+    return (ax, ay), width
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -247,12 +269,13 @@ def _add_wave(x, y, count, swell, i, doubled, out):
 
 @njit(cache=True, error_model="numpy", _nrt=False)
 def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, near):
-    """Integrals of e, x e, y e and (plane + e / 2) e over triangles of the waterplane.
+    """Integrals of e, x e, y e and (plane + e / 2) e over strips of the waterplane.
 
-    The corners of each are the middle of the hull and the ends of one of `cuts`. All is seen from
-    above. By Gauss outward, in panels of at most `PANEL` / k, and along the cuts.
+    Each lies between one of `cuts` and the axis of the hull, through its middle along `Rest.ahead`:
+    by Green's theorem they make up the waterplane. All is seen from above. By Gauss across, in
+    panels of at most `PANEL` / k, and along the cuts.
     """
-    height, (gx, gy) = plane.height, plane.slope
+    height, (gx, gy), (ax, ay) = plane.height, plane.slope, rest.ahead
     x, y, e = cuts[_PLACE_X : _PLACE_X + MOST], cuts[_PLACE_Y:_REST], cuts[_REST:_ONES]
     row, total = cuts[_ROW:_TOTAL], cuts[_TOTAL : _TOTAL + MOST]
     for n in range(count):
@@ -262,14 +285,19 @@ def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, n
             for k in range(rest.points):
                 out, weight = _THREE[k] if rest.points == 3 else _FOUR[k]
                 u = (panel + out) / rest.panels
-                to_p, to_q, part = u * (1.0 - along), u * along, u * weight * share / rest.panels
+                part = weight * share / (rest.panels * u)
                 for n in range(count):
-                    cuts[_PLACE_X + n] = to_p * cuts[P_X + n] + to_q * cuts[Q_X + n]
-                    cuts[_PLACE_Y + n] = to_p * cuts[P_Y + n] + to_q * cuts[Q_Y + n]
+                    px, qx = (1.0 - along) * cuts[P_X + n], along * cuts[Q_X + n]
+                    py, qy = (1.0 - along) * cuts[P_Y + n], along * cuts[Q_Y + n]
+                    # a part u of the way from the axis to the cut
+                    far, aside = ax * (px + qx) + ay * (py + qy), ax * (py + qy) - ay * (px + qx)
+                    cuts[_PLACE_X + n] = ax * far - ay * (u * aside)
+                    cuts[_PLACE_Y + n] = ay * far + ax * (u * aside)
                     cuts[_REST + n] = 0.0
                 add_rest(x, y, count, rest, layout, waves, found, phases, near, e, row, total)
                 for n in range(count):
-                    e_dA = part * cuts[_REST + n]
+                    aside = ax * cuts[_PLACE_Y + n] - ay * cuts[_PLACE_X + n]
+                    e_dA = part * aside * cuts[_REST + n]
                     mean = height + 0.5 * cuts[_REST + n]
                     cuts[_ONES + n] += e_dA
                     cuts[_ALONG + n] += cuts[_PLACE_X + n] * e_dA
@@ -278,12 +306,12 @@ def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, n
                         mean + gx * cuts[_PLACE_X + n] + gy * cuts[_PLACE_Y + n]
                     ) * e_dA
 
-    # times the triangles
+    # times how far each cut goes back along the axis, with the waterplane to its left
     i0 = ix = iy = iz = 0.0
     for n in range(count):
-        whole = cuts[P_X + n] * cuts[Q_Y + n] - cuts[P_Y + n] * cuts[Q_X + n]
-        i0 += whole * cuts[_ONES + n]
-        ix += whole * cuts[_ALONG + n]
-        iy += whole * cuts[_ACROSS + n]
-        iz += whole * cuts[_UP + n]
+        back = ax * (cuts[P_X + n] - cuts[Q_X + n]) + ay * (cuts[P_Y + n] - cuts[Q_Y + n])
+        i0 += back * cuts[_ONES + n]
+        ix += back * cuts[_ALONG + n]
+        iy += back * cuts[_ACROSS + n]
+        iz += back * cuts[_UP + n]
     return i0, ix, iy, iz
