@@ -19,7 +19,7 @@ from buoyancy_mj import (
     Water,
     WaterError,
 )
-from buoyancy_mj.kernels import heads, tiles
+from buoyancy_mj.kernels import heads, surface, tiles
 from buoyancy_mj.kernels import waves as kernels
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.scratch import new_scratches
@@ -272,17 +272,17 @@ def test_tiles_keep_their_bound(radius):
     around = (*sea, *scratch.cut.store)
     places = np.random.default_rng(1).uniform(-4.0, 4.0, (200, 2)) * radius
     for x, y in places:
-        found, *slope = tiles.tangent_at(*around, x, y, 0.7)
+        found, *slope = surface.tangent_at(*around, x, y, 0.7)
         eta, *exact = kernels.tangent(rows, x, y, 0.7)
         assert found == pytest.approx(eta, abs=sea_tiles.ACCURACY * radius)
         # the last degree counts once more for slopes
-        off = sea.layout[tiles.DEGREE] / sea.layout[tiles.REACH] * sea_tiles.ACCURACY * radius
+        off = tiles.DEGREE / sea.layout[tiles.REACH] * sea_tiles.ACCURACY * radius
         assert slope == pytest.approx(exact, abs=off)
 
     # and many at once find the same, near each other and far apart
     for x, y in (places.T, (places[:9] * 1e-3).T):
-        out, room = np.zeros(len(x)), np.empty((2, len(x)))
-        tiles.add_elevations(*around, (0.3, -0.2), x, y, len(x), 0.7, *room, out)
+        out = np.zeros(len(x))
+        tiles.add_elevations(*around, (0.3, -0.2), x, y, len(x), 0.7, out)
         held = sea.waves[:, : int(sea.layout[tiles.HELD])]
         phases = np.outer(x + 0.3, held[1]) + np.outer(y - 0.2, held[2]) + held[4] - 0.7 * held[3]
         one_by_one = np.cos(phases) @ held[0]
@@ -296,7 +296,7 @@ def test_a_tile_is_the_same_whoever_asks_for_it_first():
     found = []
     for order in (places, places[::-1]):
         store = new_scratches(1, 3, len(rows))[0].cut.store
-        found.append([tiles.tangent_at(*sea, *store, x, y, 3.1) for x, y in order])
+        found.append([surface.tangent_at(*sea, *store, x, y, 3.1) for x, y in order])
     assert found[0] == found[1][::-1]
 
 

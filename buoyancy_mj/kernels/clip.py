@@ -52,7 +52,7 @@ from buoyancy_mj.kernels.leaves import (
     sum_triangle,
     vertices_of,
 )
-from buoyancy_mj.kernels.tiles import swing
+from buoyancy_mj.kernels.surface import swing
 from buoyancy_mj.kernels.vectors import difference, place, rotate, triple
 
 VOLUME, CX, CY, CZ, WETTED_AREA, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y, COLUMNS = range(9)
@@ -165,7 +165,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
 
     # what is seen of the vertices of a leaf; without waves the plane is the surface
     x, y, d = scratch.seen[0], scratch.seen[1], scratch.seen[2]
-    w, row, polynomial = scratch.seen[3] if wavy else d, scratch.seen[4], scratch.seen[5]
+    w = scratch.seen[3] if wavy else d
     most, others, crossed = scratch.sorted[0], scratch.sorted[1], scratch.sorted[2]
     bent, stack, allowed = scratch.sorted[3], scratch.stack, hulls.whole[h, ALLOWED]
     edges, most_bent = hulls.edges, 0.125 * curvature if wavy else 0.0
@@ -194,9 +194,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             if wavy:
                 for n in range(count):
                     w[n] = d[n]
-                swell.add_rest(
-                    x, y, count, rest, layout, sea, found, phases, near, w, row, polynomial
-                )
+                swell.add_rest(x, y, count, rest, layout, sea, found, phases, near, w)
             first, behind = faces_of(spans, i)
             if most_bent * edges[i] * edges[i] > allowed:
                 many, few, cut, halved = sort_bent_faces(

@@ -10,7 +10,7 @@ depth w under the surface; then its part of the area of the face that it belongs
 """
 
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.tiles import tangent_at
+from buoyancy_mj.kernels.surface import tangent_at
 
 CORNER, PART, COLUMNS = 4, 12, 13
 """Columns of a corner; the column of the part of the area; how many there are."""

@@ -14,9 +14,8 @@ from buoyancy_mj.kernels.blocks import (
     FALL,
     FOUND,
     LESS,
-    LEVEL,
-    LINE,
     OVER,
+    REACH,
     SAMPLES,
     SQUARE,
     STILL,
@@ -31,8 +30,8 @@ from buoyancy_mj.kernels.blocks import (
     Y,
     Z,
     find_block,
-    head_in,
     is_known,
+    set_heads_in,
 )
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.series import turn
@@ -96,9 +95,8 @@ def _find_depths(sea, places, first, count):
     if held > 0:
         found, phases = sea.known_tiles.found, sea.known_tiles.phases
         add_elevations(
-            layout, waves, found, phases, (0.0, 0.0), room[X], room[Y], count, time,
-            room[LINE], room[LEVEL], room[ETA],
-        )  # fmt: skip
+            layout, waves, found, phases, (0.0, 0.0), room[X], room[Y], count, time, room[ETA]
+        )
     _add_waves(waves, held, room, count, time)
     for n in range(count):
         places[HEAD, first + n] = room[ETA, n] - places[Z, first + n]
@@ -117,19 +115,33 @@ def _add_waves(waves, first, room, count, time):
 
 @njit(cache=True, error_model="numpy", _nrt=False)
 def _ask_blocks(sea, places, count):
-    """Write the head at places by the blocks in which they lie."""
+    """Write the head at places by the blocks in which they lie.
+
+    As many as follow each other near one block are found together.
+    """
     blocks, store, waves, time = sea.blocks, sea.known_blocks, sea.tiles.waves, sea.time
     layout, found = blocks.layout, store.found
-    bottom = -layout[DEPTH]
-    for n in range(count):
-        x, y, z = places[X, n], places[Y, n], places[Z, n]
+    bottom, reach, first = -layout[DEPTH], layout[REACH], 0
+    while first < count:
+        x, y, z = places[X, first], places[Y, first], places[Z, first]
+        last = first + 1
         if z < bottom:
-            _sum_waves(sea, places, n, 1)
-            continue
-        b, mx, my, mz = find_block(layout, x, y, z)
-        if not is_known(found, b, mx, my, mz, time):
-            fill(waves, blocks, store, b, mx, my, mz, time)
-        places[HEAD, n] = head_in(layout, found, b, x, y, z)
+            _sum_waves(sea, places, first, 1)
+        else:
+            b, mx, my, mz = find_block(layout, x, y, z)
+            if not is_known(found, b, mx, my, mz, time):
+                fill(waves, blocks, store, b, mx, my, mz, time)
+            while last < count and _is_near(places, last, mx, my, mz, reach, bottom):
+                last += 1
+            set_heads_in(layout, found, b, places, first, last)
+        first = last
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _is_near(places, n, x, y, z, reach, bottom):
+    """Whether the polynomial of a block whose middle is given holds at a place."""
+    level = abs(places[X, n] - x) <= reach and abs(places[Y, n] - y) <= reach
+    return level and abs(places[Z, n] - z) <= reach and places[Z, n] >= bottom
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)

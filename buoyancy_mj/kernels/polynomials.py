@@ -5,9 +5,6 @@ The coefficients of x^m y^n stand in order of m, then n; those of z^p x^m y^n of
 
 from buoyancy_mj.kernels.compiling import njit
 
-LARGEST = 8
-"""Largest degree."""
-
 
 @njit(cache=True, error_model="numpy", inline="always")
 def size(degree):

@@ -19,7 +19,7 @@ from buoyancy_mj.kernels.heads import Sea
 from buoyancy_mj.kernels.hulls import ALLOWED, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, add_wet_part, sum_points
 from buoyancy_mj.kernels.sea import PressureModel
-from buoyancy_mj.kernels.tiles import swing, tangent_at
+from buoyancy_mj.kernels.surface import swing, tangent_at
 from buoyancy_mj.kernels.vectors import place, rotate, scale, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 

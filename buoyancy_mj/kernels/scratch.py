@@ -17,8 +17,8 @@ from buoyancy_mj.kernels.tiles import TileStore
 class CutScratch(NamedTuple):
     """For `clip` and `waterplane`."""
 
-    seen: Annotated[Doubles, (6, "v")]
-    """The vertices of a leaf, seen from above, their depths, and what these are found by."""
+    seen: Annotated[Doubles, (4, "v")]
+    """The vertices of a leaf, seen from above, and their depths under plane and surface."""
     sorted: Annotated[Corners, (4, "v")]
     """The faces of a leaf, sorted by `leaves`."""
     cuts: Annotated[Doubles, (cuts.ROOM,)]

@@ -13,7 +13,7 @@ import numpy as np
 
 from buoyancy_mj.kernels import tiles
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y, ROOM
+from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y
 from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.series import bend, doublings
 from buoyancy_mj.kernels.tiles import (
@@ -45,8 +45,8 @@ _FOUR = (
     (0.66999052179242813, 0.32607257743127308),
     (0.93056815579702629, 0.17392742256872692),
 )
-# columns of `cuts` behind the ends: places, the rest there, four integrals, and scratch
-_PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP, _ROW, _TOTAL = range(4 * MOST, ROOM, MOST)
+# columns of `cuts` behind the ends: places, the rest there, and four integrals
+_PLACE_X, _PLACE_Y, _REST, _ONES, _ALONG, _ACROSS, _UP = range(4 * MOST, 11 * MOST, MOST)
 PANEL = 2.0
 """Longest angle [rad] over which four points across are enough, to 2e-5 of the amplitude."""
 PANELS = 256
@@ -234,18 +234,13 @@ def see(vertices, first, count, plane, r, x, y, d):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def add_rest(x, y, count, rest, layout, waves, found, phases, near, out, row, total):
-    """Add the rest e at places seen from the middle of the hull to `out`.
-
-    `row` and `total` are scratch.
-    """
+def add_rest(x, y, count, rest, layout, waves, found, phases, near, out):
+    """Add the rest e at places seen from the middle of the hull to `out`."""
     if rest.smooth:
         eta, gx, gy = rest.touch
         for n in range(count):
             out[n] -= eta + gx * x[n] + gy * y[n]
-        add_elevations(
-            layout, waves, found, phases, rest.place, x, y, count, rest.time, row, total, out
-        )
+        add_elevations(layout, waves, found, phases, rest.place, x, y, count, rest.time, out)
     # each with a literal, so that the processor takes several places at once
     for i in range(rest.near):
         if rest.doubled == 0:
@@ -277,7 +272,6 @@ def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, n
     """
     height, (gx, gy), (ax, ay) = plane.height, plane.slope, rest.ahead
     x, y, e = cuts[_PLACE_X : _PLACE_X + MOST], cuts[_PLACE_Y:_REST], cuts[_REST:_ONES]
-    row, total = cuts[_ROW:_TOTAL], cuts[_TOTAL : _TOTAL + MOST]
     for n in range(count):
         cuts[_ONES + n] = cuts[_ALONG + n] = cuts[_ACROSS + n] = cuts[_UP + n] = 0.0
     for along, share in _TWO:
@@ -294,7 +288,7 @@ def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, n
                     cuts[_PLACE_X + n] = ax * far - ay * (u * aside)
                     cuts[_PLACE_Y + n] = ay * far + ax * (u * aside)
                     cuts[_REST + n] = 0.0
-                add_rest(x, y, count, rest, layout, waves, found, phases, near, e, row, total)
+                add_rest(x, y, count, rest, layout, waves, found, phases, near, e)
                 for n in range(count):
                     aside = ax * cuts[_PLACE_Y + n] - ay * cuts[_PLACE_X + n]
                     e_dA = part * aside * cuts[_REST + n]

@@ -1,4 +1,4 @@
-"""How a sea is laid out in tiles: how large they are, and of which degree their polynomials.
+"""How a sea is laid out in tiles and blocks: how large they are, and what each wave adds to them.
 
 A wave of amplitude a and components kx, ky leaves at most
 
@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import blocks, tiles
 from buoyancy_mj.kernels.blocks import Blocks
-from buoyancy_mj.kernels.polynomials import LARGEST
 from buoyancy_mj.kernels.still_water import decay, seabed
 from buoyancy_mj.kernels.tiles import Tiles
 from buoyancy_mj.kernels.waves import AMPLITUDE, DEPTH, KX, KY, PHASE
@@ -28,8 +27,6 @@ ACCURACY = 1e-6
 """The part of a hull's radius that tiles may leave out of the elevation in all."""
 FEW = 4
 """Waves up to which they are summed one by one."""
-LEAST = 2
-"""Least degree of the polynomials."""
 OVERLAP = 1.5
 """Side of a tile over half the side of the square in which its polynomial holds."""
 _POINTS = 12
@@ -50,23 +47,17 @@ def lay_tiles(waves: NDArray[np.float64], radii: Sequence[float]) -> Tiles:
     rows = waves[_order(waves), AMPLITUDE : PHASE + 1].T.copy()
     amplitudes, k = np.abs(rows[AMPLITUDE]), np.hypot(rows[KX], rows[KY])
     allowed = ACCURACY * min(radii)
-    held, degree, reach = _plan(rows, allowed, max(radii))
+    held, reach = _plan(rows, allowed, max(radii))
     shares = np.zeros((tiles.NUMBERS, len(k)))
-    if held:
-        shares[: len(_exponents(degree)), :held] = _fit(rows[:, :held], degree, reach)
-    layout = np.zeros(12)
+    shares[:, :held] = _fit(rows[:, :held], reach)
+    layout = np.zeros(11)
+    layout[[tiles.SIDE, tiles.REACH, tiles.HELD]] = OVERLAP * reach, reach, held
     layout[[tiles.PER_SIDE, tiles.PER_REACH]] = 1.0 / (OVERLAP * reach), 1.0 / reach
-    layout[[tiles.SIDE, tiles.REACH, tiles.HELD, tiles.DEGREE]] = (
-        OVERLAP * reach,
-        reach,
-        held,
-        degree,
-    )
     layout[tiles.HEIGHT : tiles.TWIST + 1] = [(amplitudes * k**n).sum() for n in range(4)]
     if amplitudes.any():
         layout[tiles.TURNING] = mean_wave_number(amplitudes, k)
     if held:
-        layout[tiles.ROUNDING] = allowed * (degree / reach) ** 2
+        layout[tiles.ROUNDING] = allowed * (tiles.DEGREE / reach) ** 2
     return Tiles(layout, np.concatenate([rows, shares]))
 
 
@@ -85,36 +76,31 @@ def _order(waves: NDArray[np.float64]) -> NDArray[np.intp]:
     return np.argsort(np.hypot(waves[:, KX], waves[:, KY]), kind="stable")
 
 
-def _plan(rows: NDArray[np.float64], allowed: float, radius: float) -> tuple[int, int, float]:
-    """How many waves tiles hold, the degree of their polynomials, and half their width [m].
+def _plan(rows: NDArray[np.float64], allowed: float, radius: float) -> tuple[int, float]:
+    """How many waves tiles hold, and half the width of the squares [m] in which they do.
 
     What costs least over a hull of a radius [m].
     """
     many = rows.shape[1]
     if many <= FEW:
-        return 0, LEAST, 1.0
-    degrees = np.arange(LEAST, LARGEST + 1)
-    powers = degrees[:, None] + 1
+        return 0, 1.0
+    power = tiles.DEGREE + 1
 
-    # the width that the first waves allow for each degree (degrees, waves)
+    # the width that the first waves allow (waves,)
     reaches = np.abs(rows[KX]) + np.abs(rows[KY])
-    left = np.cumsum(np.abs(rows[AMPLITUDE]) * reaches**powers, axis=1)
-    factorials = np.array([math.factorial(d + 1) for d in degrees])[:, None]
+    left = np.cumsum(np.abs(rows[AMPLITUDE]) * reaches**power)
     with np.errstate(divide="ignore"):
-        halves = 2.0 * (0.25 * allowed * factorials / left) ** (1.0 / powers)
+        halves = 2.0 * (0.25 * allowed * math.factorial(power) / left) ** (1.0 / power)
     halves = np.minimum(halves, 4.0 * radius)
 
     # about how long it takes [ns] to fill all tiles over the hull, and to ask for elevations
     held = np.arange(1, many + 1)
-    sizes = (powers * (powers + 1) // 2).astype(float)
     count = (1.0 + 2.0 * radius / (OVERLAP * halves)) ** 2
-    cost = count * (200.0 + held * (2.0 + 0.1 * sizes)) + _ASKED * (
-        0.15 * sizes + 15.0 * (many - held)
-    )
-    degree, last = np.unravel_index(np.argmin(cost), cost.shape)
-    if cost[degree, last] > _ASKED * 15.0 * many:
-        return 0, LEAST, 1.0
-    return int(held[last]), int(degrees[degree]), float(halves[degree, last])
+    cost = count * (200.0 + 6.0 * held) + _ASKED * (5.0 + 15.0 * (many - held))
+    least = int(np.argmin(cost))
+    if cost[least] > _ASKED * 15.0 * many:
+        return 0, 1.0
+    return int(held[least]), float(halves[least])
 
 
 @functools.cache
@@ -124,19 +110,19 @@ def _exponents(degree: int) -> tuple[tuple[int, int], ...]:
 
 
 @functools.cache
-def _fitting(degree: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _fitting() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Chebyshev's points in a square (p, 2), and what values there make of coefficients (c, p)."""
     line = np.cos((np.arange(_POINTS) + 0.5) * math.pi / _POINTS)
     points = np.stack(np.meshgrid(line, line, indexing="ij"), axis=-1).reshape(-1, 2)
-    powers = [points[:, 0] ** m * points[:, 1] ** n for m, n in _exponents(degree)]
+    powers = [points[:, 0] ** m * points[:, 1] ** n for m, n in _exponents(tiles.DEGREE)]
     return points, np.linalg.pinv(np.column_stack(powers))
 
 
-def _fit(rows: NDArray[np.float64], degree: int, reach: float) -> NDArray[np.float64]:
-    """What each wave adds to the coefficients of a tile, see `Tiles.shares`."""
-    points, fit = _fitting(degree)
+def _fit(rows: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
+    """What each wave adds to the coefficients of a tile, see `Tiles.waves`."""
+    points, fit = _fitting()
     phases = points @ (reach * rows[[KX, KY]])
-    odd = np.array([sum(exponents) % 2 == 1 for exponents in _exponents(degree)])[:, None]
+    odd = np.array([sum(pair) % 2 == 1 for pair in _exponents(tiles.DEGREE)])[:, None]
     fitted: NDArray[np.float64] = np.where(odd, -(fit @ np.sin(phases)), fit @ np.cos(phases))
     fitted *= rows[AMPLITUDE]
     return fitted
