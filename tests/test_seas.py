@@ -269,7 +269,7 @@ def test_tiles_keep_their_bound(radius):
     # most of the waves are in them
     assert sea.layout[tiles.HELD] > len(rows) / 2
     (scratch,) = new_scratches(1, 3, len(rows))
-    around = (*sea, *scratch.cut.store)
+    around = (sea, scratch.cut.store)
     places = np.random.default_rng(1).uniform(-4.0, 4.0, (200, 2)) * radius
     for x, y in places:
         found, *slope = surface.tangent_at(*around, x, y, 0.7)
@@ -296,7 +296,7 @@ def test_a_tile_is_the_same_whoever_asks_for_it_first():
     found = []
     for order in (places, places[::-1]):
         store = new_scratches(1, 3, len(rows))[0].cut.store
-        found.append([surface.tangent_at(*sea, *store, x, y, 3.1) for x, y in order])
+        found.append([surface.tangent_at(sea, store, x, y, 3.1) for x, y in order])
     assert found[0] == found[1][::-1]
 
 

@@ -143,6 +143,9 @@ def build_load_model(
     rows = _find_rows(placed, hulls)
     bladders = [one for one in placed if rows.get(one.name, -1) >= len(hulls)]
     packed = settings.method.pack(_list_hulls(hulls, bladders), water)
+    pressure = PressureModel[settings.pressure.replace("-", "_")]
+    if pressure != PressureModel.archimedes and isinstance(packed, PackedHulls):
+        packed.find_rules()
 
     # what acts on them
     foils = find_foils(model, bodies)
@@ -150,7 +153,7 @@ def build_load_model(
         hulls=packed.hulls if isinstance(packed, PackedHulls) else empty(Hulls),
         owners=owners,
         bodies=np.unique([*owners, *(foil.body for foil in foils), *(one.body for one in placed)]),
-        sea=sea_arrays(water, PressureModel[settings.pressure.replace("-", "_")]),
+        sea=sea_arrays(water, pressure),
         damping=resolve_damping(
             damping,
             model,

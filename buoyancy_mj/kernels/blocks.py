@@ -95,17 +95,15 @@ def is_known(found, b, x, y, z, time):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, fastmath={"contract"})
-def set_heads_in(layout, found, b, places, first, last):
-    """Write the head of a block at places from `first` to `last`, rows x, y, z, to the next row.
+def set_heads_in(found, b, room, count):
+    """Write the head of a block at `count` places, rows `X` to `Z` of the room, to row `FOUND`.
 
-    By Horner's rule, whose length is fixed, so that the processor takes several places at once.
+    They are in parts of `REACH` from its middle. By Horner's rule, whose length is fixed, so that
+    the processor takes several places at once.
     """
-    scale, mx, my = 1.0 / layout[REACH], found[b, MIDDLE_X], found[b, MIDDLE_Y]
-    mz = found[b, MIDDLE_Z]
-    for n in range(first, last):
-        u, v = (places[X, n] - mx) * scale, (places[Y, n] - my) * scale
-        w = (places[Z, n] - mz) * scale
-        i, total = HEAD + NUMBERS, 0.0
+    for n in range(count):
+        u, v, w, total = room[X, n], room[Y, n], room[Z, n], 0.0
+        i = HEAD + NUMBERS
         for p in range(DEGREE, -1, -1):
             level = 0.0
             for m in range(DEGREE - p, -1, -1):
@@ -115,4 +113,4 @@ def set_heads_in(layout, found, b, places, first, last):
                     row = row * v + found[b, i]
                 level = level * u + row
             total = total * w + level
-        places[Z + 1, n] = total
+        room[FOUND, n] = total

@@ -78,8 +78,7 @@ def submerge_hulls(
     Only hulls that the surface may cut cost more than a few operations.
     """
     wholes, frames = hulls.whole, hulls.frames
-    layout, sea = hulls.tiles.layout, hulls.tiles.waves
-    found, phases = scratch.store.found, scratch.store.phases
+    tiles, store = hulls.tiles, scratch.store
     positions, rotations = geoms.geom_xpos, geoms.geom_xmat
     for h in range(first, last):
         origin, r = positions[frames[h]], rotations[frames[h]]
@@ -90,7 +89,7 @@ def submerge_hulls(
         e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
         x, y, z = place(origin, r, c0, c1, c2)
         radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-        eta, spread, curvature = swing(layout, sea, found, phases, x, y, time, radius)
+        eta, spread, curvature = swing(tiles, store, x, y, time, radius)
         depth = level + eta - z
         spread += abs(r[6]) * e0 + abs(r[7]) * e1 + abs(r[8]) * e2
 
@@ -154,13 +153,10 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     Triangles are visited at the surface alone: nodes that are wholly wet are answered by their
     moments. `curvature` is a bound of the surface's over the hull.
     """
-    layout, sea = hulls.tiles.layout, hulls.tiles.waves
-    found, phases, near = scratch.store.found, scratch.store.phases, scratch.swell
+    tiles, store, near = hulls.tiles, scratch.store, scratch.swell
     vertices, faces, sizes = hulls.vertices, hulls.faces, hulls.sizes
     spans, boxes, node_moments = hulls.spans, hulls.boxes, hulls.moments
-    plane, rest = swell.approach(
-        level, layout, sea, found, phases, origin, r, hulls.whole, h, time, near
-    )
+    plane, rest = swell.approach(level, tiles, store, origin, r, hulls.whole, h, time, near)
     wavy = rest.near > 0 or rest.smooth
 
     # what is seen of the vertices of a leaf; without waves the plane is the surface
@@ -181,7 +177,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
         under = swell.depth_away(plane, away)
         depth, slope = under, plane.gradient
         if wavy:
-            e, lean = swell.over_node(rest, r, layout, sea, found, phases, near, away)
+            e, lean = swell.over_node(rest, r, tiles, store, near, away)
             depth += e
             slope = slope[0] + lean[0], slope[1] + lean[1], slope[2] + lean[2]
         spread = tree.spread_in_box(half, slope, curvature)
@@ -194,7 +190,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             if wavy:
                 for n in range(count):
                     w[n] = d[n]
-                swell.add_rest(x, y, count, rest, layout, sea, found, phases, near, w)
+                swell.add_rest(x, y, count, rest, tiles, store, near, w)
             first, behind = faces_of(spans, i)
             if most_bent * edges[i] * edges[i] > allowed:
                 many, few, cut, halved = sort_bent_faces(
@@ -225,10 +221,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                         wavy,
                         plane,
                         rest,
-                        layout,
-                        sea,
-                        found,
-                        phases,
+                        tiles,
+                        store,
                         near,
                     )
                     waiting = 0
@@ -239,7 +233,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 size, top = sizes[bent[n]], 0
                 while top >= 0:
                     more = split(
-                        stack, top, curvature, allowed, (layout, sea, found, phases),
+                        stack, top, curvature, allowed, (tiles, store),
                         rest.place, rest.touch_all, time,
                     )  # fmt: skip
                     if more > top:
@@ -254,7 +248,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                         if waiting == MOST:
                             sums, extra = _take(
                                 cuts, waiting, sums, extra, wavy, plane, rest,
-                                layout, sea, found, phases, near,
+                                tiles, store, near,
                             )  # fmt: skip
                             waiting = 0
                     top -= 1
@@ -264,20 +258,16 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
         i = tree.node_after(spans, i, dry or wet)
 
     # the cuts that still wait
-    sums, extra = _take(
-        cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near
-    )
+    sums, extra = _take(cuts, waiting, sums, extra, wavy, plane, rest, tiles, store, near)
     return _join(total, sums, extra, plane, r, hulls.whole[h, FILL])
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _take(cuts, waiting, sums, extra, wavy, plane, rest, layout, sea, found, phases, near):
+def _take(cuts, waiting, sums, extra, wavy, plane, rest, tiles, store, near):
     """Take the cuts that wait, into integrals over triangles, and of e over the waterplane."""
     sums = add(sums, sum_cuts(cuts, waiting))
     if wavy:
-        more = swell.waterplane_moments(
-            cuts, waiting, plane, rest, layout, sea, found, phases, near
-        )
+        more = swell.waterplane_moments(cuts, waiting, plane, rest, tiles, store, near)
         extra = _sum_four(extra, more)
     return sums, extra
 

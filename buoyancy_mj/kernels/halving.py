@@ -40,7 +40,7 @@ def split(stack, top, curvature, allowed, sea, place, touch, time):
         top: the row of the triangle.
         curvature: bound of the surface's [1/m].
         allowed: by how much a straight edge that lies in the surface may be off [m].
-        sea: layout and waves of `tiles.Tiles`, tiles and phases of `tiles.TileStore`.
+        sea: `tiles.Tiles`, and a `tiles.TileStore`.
         place: where x and y count from (2,) [m].
         touch: elevation there of the plane that d is the depth under, and its gradient (2,).
         time: [s].
@@ -65,8 +65,8 @@ def split(stack, top, curvature, allowed, sea, place, touch, time):
     i, j = CORNER * first, CORNER * ((first + 1) % 3)
     x, y = 0.5 * (stack[top, i] + stack[top, j]), 0.5 * (stack[top, i + 1] + stack[top, j + 1])
     d = 0.5 * (stack[top, i + 2] + stack[top, j + 2])
-    layout, waves, found, phases = sea
-    eta, _, _ = tangent_at(layout, waves, found, phases, place[0] + x, place[1] + y, time)
+    tiles, store = sea
+    eta, _, _ = tangent_at(tiles, store, place[0] + x, place[1] + y, time)
     w = d + eta - (touch[0] + touch[1] * x + touch[2] * y)
     for c in range(COLUMNS):
         stack[top + 1, c] = stack[top, c]

@@ -41,6 +41,7 @@ from buoyancy_mj.kernels.tiles import (
     HELD,
     KX,
     KY,
+    LANES,
     OMEGA,
     PHASE,
     Tiles,
@@ -72,45 +73,36 @@ class Sea(NamedTuple):
 @njit(cache=True, error_model="numpy", _nrt=False)
 def set_heads(sea, places, count):
     """Write the head at `count` places, rows 0 to 2 of them, to row `HEAD`."""
-    few = sea.tiles.layout[HELD] == 0.0
-    if sea.dynamic and not few:
+    if not sea.dynamic:
+        set_depths(sea, places, count)
+    elif sea.tiles.layout[HELD] > 0.0:
         _ask_blocks(sea, places, count)
-        return
-    for first in range(0, count, SAMPLES):
-        some = min(SAMPLES, count - first)
-        if sea.dynamic:
-            _sum_waves(sea, places, first, some)
-        else:
-            _find_depths(sea, places, first, some)
+    else:
+        for first in range(0, count, SAMPLES):
+            _sum_waves(sea, places, first, min(SAMPLES, count - first))
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _find_depths(sea, places, first, count):
-    """Write the depth under the surface at up to `SAMPLES` places from `first` on."""
-    layout, waves, room, time = sea.tiles.layout, sea.tiles.waves, sea.known_blocks.room, sea.time
-    held = int(layout[HELD])
+def set_depths(sea, places, count):
+    """Write the depth under the surface at `count` places, rows 0 to 2 of them, to row `HEAD`."""
+    tiles, time, x, y, depths = sea.tiles, sea.time, places[X], places[Y], places[HEAD]
+    held = int(tiles.layout[HELD])
     for n in range(count):
-        room[X, n], room[Y, n] = places[X, first + n], places[Y, first + n]
-        room[ETA, n] = 0.0
+        depths[n] = -places[Z, n]
     if held > 0:
-        found, phases = sea.known_tiles.found, sea.known_tiles.phases
-        add_elevations(
-            layout, waves, found, phases, (0.0, 0.0), room[X], room[Y], count, time, room[ETA]
-        )
-    _add_waves(waves, held, room, count, time)
-    for n in range(count):
-        places[HEAD, first + n] = room[ETA, n] - places[Z, first + n]
+        add_elevations(tiles, sea.known_tiles, (0.0, 0.0), x, y, count, time, depths)
+    _add_waves(tiles.waves, held, x, y, count, time, depths)
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _add_waves(waves, first, room, count, time):
-    """Add the elevations of waves from `first` on at places to row `ETA`."""
+def _add_waves(waves, first, x, y, count, time, out):
+    """Add the elevations of waves from `first` on at places x, y to `out`."""
     for w in range(first, waves.shape[1]):
         kx, ky, amplitude = waves[KX, w], waves[KY, w], waves[AMPLITUDE, w]
         late = waves[PHASE, w] - waves[OMEGA, w] * time
         for n in range(count):
-            cosine, _ = turn(kx * room[X, n] + ky * room[Y, n] + late)
-            room[ETA, n] += amplitude * cosine
+            cosine, _ = turn(kx * x[n] + ky * y[n] + late)
+            out[n] += amplitude * cosine
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -119,29 +111,31 @@ def _ask_blocks(sea, places, count):
 
     As many as follow each other near one block are found together.
     """
-    blocks, store, waves, time = sea.blocks, sea.known_blocks, sea.tiles.waves, sea.time
-    layout, found = blocks.layout, store.found
-    bottom, reach, first = -layout[DEPTH], layout[REACH], 0
+    layout, store, time = sea.blocks.layout, sea.known_blocks, sea.time
+    bottom, scale, room, first = -layout[DEPTH], 1.0 / layout[REACH], store.room, 0
     while first < count:
         x, y, z = places[X, first], places[Y, first], places[Z, first]
-        last = first + 1
         if z < bottom:
             _sum_waves(sea, places, first, 1)
-        else:
-            b, mx, my, mz = find_block(layout, x, y, z)
-            if not is_known(found, b, mx, my, mz, time):
-                fill(waves, blocks, store, b, mx, my, mz, time)
-            while last < count and _is_near(places, last, mx, my, mz, reach, bottom):
-                last += 1
-            set_heads_in(layout, found, b, places, first, last)
-        first = last
+            first += 1
+            continue
+        b, mx, my, mz = find_block(layout, x, y, z)
+        if not is_known(store.found, b, mx, my, mz, time):
+            fill(sea.tiles.waves, sea.blocks, store, b, mx, my, mz, time)
+        n = 0
+        while n < SAMPLES and first + n < count:
+            u, v = (places[X, first + n] - mx) * scale, (places[Y, first + n] - my) * scale
+            w = (places[Z, first + n] - mz) * scale
+            if max(abs(u), abs(v), abs(w)) > 1.0 or places[Z, first + n] < bottom:
+                break
+            room[X, n], room[Y, n], room[Z, n] = u, v, w
+            n += 1
 
-
-@njit(cache=True, error_model="numpy", inline="always")
-def _is_near(places, n, x, y, z, reach, bottom):
-    """Whether the polynomial of a block whose middle is given holds at a place."""
-    level = abs(places[X, n] - x) <= reach and abs(places[Y, n] - y) <= reach
-    return level and abs(places[Z, n] - z) <= reach and places[Z, n] >= bottom
+        # the last ones may be of no use
+        set_heads_in(store.found, b, room, (n + LANES - 1) // LANES * LANES)
+        for i in range(n):
+            places[HEAD, first + i] = room[FOUND, i]
+        first += n
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -156,7 +150,7 @@ def _sum_waves(sea, places, first, count):
         room[LESS, n] = 0.0
 
     # the elevation, and by it a guess of the height in still water
-    _add_waves(waves, 0, room, count, time)
+    _add_waves(waves, 0, room[X], room[Y], count, time, room[ETA])
     for n in range(count):
         room[STILL, n] = still_height(room[Z, n], room[ETA, n], fall, depth)
 

@@ -4,6 +4,7 @@ from typing import Annotated, NamedTuple
 
 from buoyancy_mj.kernels.arrays import Corners, Doubles, Words
 from buoyancy_mj.kernels.blocks import Blocks
+from buoyancy_mj.kernels.rules import POINTS
 from buoyancy_mj.kernels.tiles import Tiles
 
 WHOLE_VOLUME, WHOLE_CENTROID, WHOLE_AREA, WHOLE_MIDDLE, WHOLE_HALF = 0, 1, 4, 5, 8
@@ -34,6 +35,9 @@ class Hulls(NamedTuple):
     """Bounding box of each node: middle and half sides [m]."""
     moments: Annotated[Doubles, ("n", 31)]
     """Moments of the vector area under each node, times the part that displaces; and the area."""
+    rules: Annotated[Doubles, ("r", 3 * POINTS)]
+    """Vector areas of the points of each node's rule, times the part that displaces, see `rules`;
+    none where nobody asks for pressures."""
     edges: Annotated[Doubles, ("n",)]
     """Longest edge of the faces of each leaf, 0 for other nodes [m]."""
     whole: Annotated[Doubles, ("h", COLUMNS)]

@@ -1,8 +1,8 @@
 """The water's pressure in waves, integrated over the wet side of hulls: forces and torques.
 
-By a tree of moments: a wet node that is small beside the waves is answered by its moments, with the
-pressure as a quadratic about its middle, see `expansions`; elsewhere triangles are cut at the
-surface and summed at points, see `quadrature`. The pressure itself comes from `blocks`.
+By a tree: a wet node that is small beside the waves is answered by its rule, see `rules`; elsewhere
+triangles are cut at the surface and have rules of their own, see `quadrature`. The pressure at the
+points of all rules comes from `heads`.
 """
 
 import math
@@ -13,18 +13,19 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import tree
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.expansions import NODES, let_wait, sum_nodes
 from buoyancy_mj.kernels.halving import CORNER, PART, split
-from buoyancy_mj.kernels.heads import Sea
+from buoyancy_mj.kernels.heads import HEAD, Sea, set_depths
 from buoyancy_mj.kernels.hulls import ALLOWED, WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, add_wet_part, sum_points
+from buoyancy_mj.kernels.rules import POINTS, let_node_wait
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.kernels.surface import swing, tangent_at
 from buoyancy_mj.kernels.vectors import place, rotate, scale, triple
 from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 
-SMALL = 0.3
-"""Half the diagonal of a node, times the typical wave number, for moments: to SMALL^3 / 6."""
+SMALL = 0.8
+"""Half the diagonal of a node, times the typical wave number, for its rule: to 1.5e-4 of the
+amplitude in the mean, 1e-3 in corners."""
 DEPTHS = 16
 """Depths for which the typical wave number is known."""
 
@@ -64,10 +65,8 @@ def press_hulls(
     """
     wholes, frames = hulls.whole, hulls.frames
     positions, rotations, level = geoms.geom_xpos, geoms.geom_xmat, sea.level
-    layout, waves, store = hulls.tiles.layout, hulls.tiles.waves, scratch.cut.store
-    found, phases = store.found, store.phases
-    # triangles in the world, nodes in the frame; both about its origin
-    sums, turned = scratch.pressure.sums, scratch.pressure.turned
+    store = scratch.cut.store
+    sums = scratch.pressure.sums
     dynamic = sea.pressure == PressureModel.froude_krylov
     around = Sea(hulls.tiles, store, hulls.blocks, scratch.pressure.store, time, dynamic)
     for h in range(first, last):
@@ -79,20 +78,18 @@ def press_hulls(
         e0, e1, e2 = triple(wholes, h, WHOLE_HALF)
         x, y, z = place(origin, r, c0, c1, c2)
         radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-        eta, spread, curvature = swing(layout, waves, found, phases, x, y, time, radius)
+        eta, spread, curvature = swing(hulls.tiles, store, x, y, time, radius)
         depth = level + eta - z
         if not math.isfinite(depth) or depth <= -radius - spread:
             out[h, :] = 0.0 if depth < math.inf else math.nan
             continue
 
-        sums[:], turned[:] = 0.0, 0.0
+        sums[:] = 0.0
         _walk(hulls, h, around, (origin[0], origin[1], origin[2] - level), r, curvature, scratch)
 
-        # the sum, outward
-        fx, fy, fz = rotate(r, turned[0], turned[1], turned[2])
-        tx, ty, tz = rotate(r, turned[3], turned[4], turned[5])
-        out[h, 0], out[h, 1], out[h, 2] = -(sums[0] + fx), -(sums[1] + fy), -(sums[2] + fz)
-        out[h, 3], out[h, 4], out[h, 5] = -(sums[3] + tx), -(sums[4] + ty), -(sums[5] + tz)
+        # outward
+        for i in range(6):
+            out[h, i] = -sums[i]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -103,16 +100,14 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
 
     The sea is a `heads.Sea`, and the origin that of the hull's frame, from the still level.
     """
-    typical, spans, boxes, moments = hulls.typical, hulls.spans, hulls.boxes, hulls.moments
+    typical, spans, boxes, rules = hulls.typical, hulls.spans, hulls.boxes, hulls.rules
     vertices, faces, areas = hulls.vertices, hulls.faces, hulls.areas
-    layout, waves, time, dynamic = sea.tiles.layout, sea.tiles.waves, sea.time, sea.dynamic
-    found, phases, depths = sea.known_tiles.found, sea.known_tiles.phases, scratch.cut.seen
-    points, asked, nodes = scratch.pressure.points, scratch.pressure.asked, scratch.pressure.nodes
-    sums, turned = scratch.pressure.sums, scratch.pressure.turned
+    tiles, store, time, dynamic = sea.tiles, sea.known_tiles, sea.time, sea.dynamic
+    points, corners, sums = scratch.pressure.points, scratch.pressure.corners, scratch.pressure.sums
     stack, allowed = scratch.cut.stack, hulls.whole[h, ALLOWED]
     edges, most_bent = hulls.edges, 0.125 * curvature
     # int64: a literal 0 would have all that it is given to compiled twice
-    count = many = int64(0)
+    count = int64(0)
     i, wet_until = hulls.nodes[h], int64(0)
     end = spans[i, tree.BEHIND]
     while i < end:
@@ -124,7 +119,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
         # the depth of the middle of the box, and how much less or more any point of it has
         dry, wet = False, i < wet_until
         if not wet:
-            eta, along, across = tangent_at(layout, waves, found, phases, x, y, time)
+            eta, along, across = tangent_at(tiles, store, x, y, time)
             h0 = along * r[0] + across * r[3] - r[6]
             h1 = along * r[1] + across * r[4] - r[7]
             h2 = along * r[2] + across * r[5] - r[8]
@@ -142,36 +137,31 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             most = typical[int(min(top * most, DEPTHS - 1.0))]
         small = wet and not dry and most * size <= SMALL and size > 0.0
         if small:
-            if many == NODES:
-                sum_nodes(sea, asked, nodes, many, moments, boxes, r, turned)
-                many = int64(0)
-            let_wait(asked, nodes, many, i, (x, y, z), size)
-            many += 1
+            if count > PLACES - POINTS:
+                count = sum_points(sea, points, count, origin, sums)
+            count = let_node_wait(points, count, rules, boxes, i, origin, r)
         elif not dry and tree.is_leaf(spans, i):
+            # its vertices in the world, and their depths where some may be dry
             first, last = spans[i, tree.FIRST_VERTEX], spans[i, tree.END_VERTEX]
-            rough = most_bent * edges[i] * edges[i] > allowed
-
-            # depths of the vertices, where some may be dry
             for n in range(last - first):
-                depths[0, n] = 1.0
-                if not wet:
-                    x, y, z = _corner(vertices, first + n, r, origin)
-                    eta, _, _ = tangent_at(layout, waves, found, phases, x, y, time)
-                    depths[0, n] = eta - z
+                v0, v1, v2 = triple(vertices, first + n, 0)
+                corners[0, n], corners[1, n], corners[2, n] = place(origin, r, v0, v1, v2)
+                corners[HEAD, n] = 1.0
+            if not wet:
+                set_depths(sea, corners, last - first)
+            rough = most_bent * edges[i] * edges[i] > allowed and not wet
 
             # what is wet of each triangle
             for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
-                j, k, o = faces[f, 0], faces[f, 1], faces[f, 2]
-                dj, dk, do = depths[0, j - first], depths[0, k - first], depths[0, o - first]
+                j, k, o = faces[f, 0] - first, faces[f, 1] - first, faces[f, 2] - first
+                dj, dk, do = corners[HEAD, j], corners[HEAD, k], corners[HEAD, o]
                 if dj <= 0.0 and dk <= 0.0 and do <= 0.0 and not rough:
                     continue
                 if count > PLACES - TRIANGLE:
                     count = sum_points(sea, points, count, origin, sums)
-                p = _corner(vertices, j, r, origin)
-                q = _corner(vertices, k, r, origin)
-                s = _corner(vertices, o, r, origin)
+                p, q, s = _corner(corners, j), _corner(corners, k), _corner(corners, o)
                 area = rotate(r, areas[f, 0], areas[f, 1], areas[f, 2])
-                if not rough or wet:
+                if not rough:
                     count = add_wet_part(points, count, p, q, s, dj, dk, do, area, most, sums)
                     continue
 
@@ -183,7 +173,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 top = 0
                 while top >= 0:
                     more = split(
-                        stack, top, curvature, allowed, (layout, waves, found, phases),
+                        stack, top, curvature, allowed, (tiles, store),
                         (0.0, 0.0), (0.0, 0.0, 0.0), time,
                     )  # fmt: skip
                     if more > top:
@@ -203,14 +193,12 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                     top -= 1
         i = tree.node_after(spans, i, dry or small)
     sum_points(sea, points, count, origin, sums)
-    sum_nodes(sea, asked, nodes, many, moments, boxes, r, turned)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _corner(vertices, n, r, origin):
-    """A vertex in the world, from the still level."""
-    x, y, z = triple(vertices, n, 0)
-    return place(origin, r, x, y, z)
+def _corner(corners, n):
+    """A vertex of a leaf, from the still level."""
+    return corners[0, n], corners[1, n], corners[2, n]
 
 
 @njit(cache=True, error_model="numpy", inline="always")

@@ -1,4 +1,6 @@
-"""Pressure over triangles, summed by rules at points, which are gathered and summed together.
+"""Pressure over areas, summed by rules at points, which are gathered and summed together.
+
+Nodes of the tree have rules of their own, see `rules`.
 
 A triangle is a tuple of three corners, from the still level, and its vector area. One that is small
 beside the waves needs one point or three; larger ones are divided into pieces with the rule of
@@ -28,7 +30,7 @@ AREA = HEAD + 1
 """First row of their vector areas, behind those of `heads.set_heads`."""
 _ROOT = math.sqrt(15.0)
 _A, _B = (6.0 - _ROOT) / 21.0, (6.0 + _ROOT) / 21.0
-_RULE = (
+RULE = (
     (1.0 / 3.0, 1.0 / 3.0, 9.0 / 40.0),
     (_A, _A, (155.0 - _ROOT) / 1200.0),
     (1.0 - 2.0 * _A, _A, (155.0 - _ROOT) / 1200.0),
@@ -37,7 +39,7 @@ _RULE = (
     (1.0 - 2.0 * _B, _B, (155.0 + _ROOT) / 1200.0),
     (_B, 1.0 - 2.0 * _B, (155.0 + _ROOT) / 1200.0),
 )
-"""Barycentric coordinates of the first and the second corner, and weights."""
+"""Barycentric coordinates of the first and the second corner, and weights: exact to degree 5."""
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
@@ -108,7 +110,7 @@ def _add_triangle(points, count, p, q, o, area, most, sums):
         for j in range(n - i):
             # the upright piece, and beside it the one upside down
             for flipped in range(2 if j < n - i - 1 else 1):
-                for first, second, weight in _RULE:
+                for first, second, weight in RULE:
                     s, t = (i + first) / n, (j + second) / n
                     if flipped:
                         s, t = (i + 1 - first) / n, (j + 1 - second) / n
@@ -136,7 +138,7 @@ def _put(points, n, place, share, area):
         points[AREA + c, n] = share * area[c]
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath={"reassoc", "contract"})
 def sum_points(sea, points, count, origin, sums):
     """Add force and torque about the origin of the pressure at all points that wait.
 
@@ -152,14 +154,17 @@ def sum_points(sea, points, count, origin, sums):
     """
     set_heads(sea, points, count)
     ox, oy, oz = origin
+    force_x = force_y = force_z = torque_x = torque_y = torque_z = 0.0
     for n in range(count):
         head = points[HEAD, n]
         fx, fy, fz = head * points[AREA, n], head * points[AREA + 1, n], head * points[AREA + 2, n]
         x, y, z = points[0, n] - ox, points[1, n] - oy, points[2, n] - oz
-        sums[0] += fx
-        sums[1] += fy
-        sums[2] += fz
-        sums[3] += y * fz - z * fy
-        sums[4] += z * fx - x * fz
-        sums[5] += x * fy - y * fx
+        force_x += fx
+        force_y += fy
+        force_z += fz
+        torque_x += y * fz - z * fy
+        torque_y += z * fx - x * fz
+        torque_z += x * fy - y * fx
+    for i, more in enumerate((force_x, force_y, force_z, torque_x, torque_y, torque_z)):
+        sums[i] += more
     return 0

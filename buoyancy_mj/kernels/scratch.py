@@ -6,9 +6,8 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 
 from buoyancy_mj.kernels import cuts, halving, swell
-from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, Words, fields
+from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, fields
 from buoyancy_mj.kernels.blocks import BlockStore
-from buoyancy_mj.kernels.expansions import NODES, SIZE
 from buoyancy_mj.kernels.heads import HEAD
 from buoyancy_mj.kernels.quadrature import AREA, PLACES
 from buoyancy_mj.kernels.tiles import TileStore
@@ -38,14 +37,10 @@ class PressureScratch(NamedTuple):
     """The blocks of the sea that are known."""
     points: Annotated[Doubles, (AREA + 3, PLACES)]
     """The points of `quadrature`."""
-    asked: Annotated[Doubles, (HEAD + 1, NODES * SIZE)]
-    """The places of `expansions`."""
-    nodes: Annotated[Words, (NODES,)]
-    """The nodes of `expansions`."""
+    corners: Annotated[Doubles, (HEAD + 1, "v")]
+    """The vertices of a leaf, in the world, and their depths."""
     sums: Annotated[Doubles, (6,)]
-    """Force and torque on triangles."""
-    turned: Annotated[Doubles, (6,)]
-    """Force and torque on nodes, in the frame of the hull."""
+    """Force and torque."""
 
 
 class Scratch(NamedTuple):

@@ -25,13 +25,13 @@ from buoyancy_mj.kernels.tiles import (
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def tangent_at(layout, waves, found, phases, x, y, time):
+def tangent_at(tiles, store, x, y, time):
     """The elevation of all waves at a place, and its gradient."""
-    held = int(layout[HELD])
+    held, waves = int(tiles.layout[HELD]), tiles.waves
     eta = along = across = 0.0
     if held > 0:
-        t = find_tile(layout, waves, found, phases, x, y, time)
-        eta, along, across = tangent_in(layout, found, t, x, y)
+        t = find_tile(tiles, store, x, y, time)
+        eta, along, across = tangent_in(tiles, store, t, x, y)
     for w in range(held, waves.shape[1]):
         amplitude, kx, ky = waves[AMPLITUDE, w], waves[KX, w], waves[KY, w]
         angle = kx * x + ky * y - waves[OMEGA, w] * time + waves[PHASE, w]
@@ -43,14 +43,14 @@ def tangent_at(layout, waves, found, phases, x, y, time):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def swing(layout, waves, found, phases, x, y, time, radius):
+def swing(tiles, store, x, y, time, radius):
     """Elevation at a place, and bounds within a radius: how much it differs, and is curved."""
-    held = int(layout[HELD])
+    held, waves = int(tiles.layout[HELD]), tiles.waves
     eta = along = across = hxx = hxy = hyy = 0.0
     if held > 0:
-        t = find_tile(layout, waves, found, phases, x, y, time)
-        eta, along, across = tangent_in(layout, found, t, x, y)
-        hxx, hxy, hyy = second_derivatives_in(layout, found, t, x, y)
+        t = find_tile(tiles, store, x, y, time)
+        eta, along, across = tangent_in(tiles, store, t, x, y)
+        hxx, hxy, hyy = second_derivatives_in(tiles, store, t, x, y)
     for w in range(held, waves.shape[1]):
         amplitude, kx, ky = waves[AMPLITUDE, w], waves[KX, w], waves[KY, w]
         angle = kx * x + ky * y - waves[OMEGA, w] * time + waves[PHASE, w]
@@ -63,6 +63,7 @@ def swing(layout, waves, found, phases, x, y, time, radius):
         hyy -= crest * ky * ky
 
     # the values at the place, and by how much they can differ elsewhere
+    layout = tiles.layout
     bent = math.sqrt(hxx * hxx + 2.0 * hxy * hxy + hyy * hyy) + layout[ROUNDING]
     curvature = min(layout[CURVATURE], bent + layout[TWIST] * radius)
     steepness = min(layout[STEEPNESS], math.hypot(along, across) + curvature * radius)

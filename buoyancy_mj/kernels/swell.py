@@ -11,15 +11,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from buoyancy_mj.kernels import tiles
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y
 from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.series import bend, doublings
 from buoyancy_mj.kernels.tiles import (
     AMPLITUDE,
+    HELD,
     KX,
     KY,
+    OMEGA,
+    PHASE,
+    TURNING,
     add_elevations,
     find_tile,
     tangent_in,
@@ -101,19 +104,17 @@ class Rest(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def approach(level, layout, waves, found, phases, origin, r, whole, h, time, near):
+def approach(level, tiles, store, origin, r, whole, h, time, near):
     """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane` and a `Rest`.
 
-    Layout and waves are of `tiles.Tiles`, what was found of a `tiles.TileStore`; the near waves go
-    to `near`.
+    The tiles are `tiles.Tiles`, and those that are known a `tiles.TileStore`; the near waves go to
+    `near`.
     """
     c0, c1, c2 = triple(whole, h, WHOLE_MIDDLE)
     x, y, _ = place(origin, r, c0, c1, c2)
     e0, e1, e2 = triple(whole, h, WHOLE_HALF)
     radius = math.sqrt(e0 * e0 + e1 * e1 + e2 * e2)
-    touch, (eta, s0, s1, s2), count, steepest = _gather(
-        layout, waves, found, phases, x, y, r, time, near
-    )
+    touch, (eta, s0, s1, s2), count, steepest = _gather(tiles, store, x, y, r, time, near)
     change = steepest * radius
 
     # the plane, as the depth under it: d + g (x - c)
@@ -126,10 +127,10 @@ def approach(level, layout, waves, found, phases, origin, r, whole, h, time, nea
 
     # the rest, with the way across the hull that is divided into panels
     ahead, width = _look_along(r, (e0, e1, e2))
-    turn = layout[tiles.TURNING] * width
+    turn = tiles.layout[TURNING] * width
     panels, points = min(max(1, math.ceil(turn / PANEL)), PANELS), 3 if turn <= SHORT else 4
     return plane, Rest(
-        count, int(layout[tiles.HELD]) > 0, doublings(change), ahead, panels, points, (x, y),
+        count, int(tiles.layout[HELD]) > 0, doublings(change), ahead, panels, points, (x, y),
         touch, (eta, gx, gy), time,
     )  # fmt: skip
 
@@ -153,21 +154,22 @@ def _look_along(r, half):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _gather(layout, waves, found, phases, x, y, r, time, near):
+def _gather(tiles, store, x, y, r, time, near):
     """Bring the near waves to a hull, and find the plane over its middle.
 
     Returns the elevation of the tiles there, with its gradient in the world; that of all waves,
     with its gradient in the hull's frame; how many waves are near; and their largest wave number.
     """
     eta = gx = gy = g0 = g1 = g2 = steepest = 0.0
-    held, count = int(layout[tiles.HELD]), waves.shape[1]
+    held, waves = int(tiles.layout[HELD]), tiles.waves
+    count = waves.shape[1]
     if held > 0:
-        t = find_tile(layout, waves, found, phases, x, y, time)
-        eta, gx, gy = tangent_in(layout, found, t, x, y)
+        t = find_tile(tiles, store, x, y, time)
+        eta, gx, gy = tangent_in(tiles, store, t, x, y)
     touch = (eta, gx, gy)
     for w in range(held, count):
         amplitude, kx, ky = waves[AMPLITUDE, w], waves[KX, w], waves[KY, w]
-        phase = kx * x + ky * y - waves[tiles.OMEGA, w] * time + waves[tiles.PHASE, w]
+        phase = kx * x + ky * y - waves[OMEGA, w] * time + waves[PHASE, w]
         crest, slope = amplitude * math.cos(phase), amplitude * math.sin(phase)
         steepest = max(steepest, math.sqrt(kx * kx + ky * ky))
         k0, k1, k2 = kx * r[0] + ky * r[3], kx * r[1] + ky * r[4], kx * r[2] + ky * r[5]
@@ -184,7 +186,7 @@ def _gather(layout, waves, found, phases, x, y, r, time, near):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def over_node(rest, r, layout, waves, found, phases, near, away):
+def over_node(rest, r, tiles, store, near, away):
     """The rest of the elevation over a place `away` from the middle of the hull, in its frame.
 
     Also its gradient there, in the frame of the hull.
@@ -192,8 +194,8 @@ def over_node(rest, r, layout, waves, found, phases, near, away):
     e = s0 = s1 = s2 = 0.0
     if rest.smooth:
         x, y, _ = rotate(r, away[0], away[1], away[2])
-        t = find_tile(layout, waves, found, phases, rest.place[0] + x, rest.place[1] + y, rest.time)
-        e, sx, sy = tangent_in(layout, found, t, rest.place[0] + x, rest.place[1] + y)
+        t = find_tile(tiles, store, rest.place[0] + x, rest.place[1] + y, rest.time)
+        e, sx, sy = tangent_in(tiles, store, t, rest.place[0] + x, rest.place[1] + y)
         eta, gx, gy = rest.touch
         e -= eta + gx * x + gy * y
         sx, sy = sx - gx, sy - gy
@@ -234,13 +236,13 @@ def see(vertices, first, count, plane, r, x, y, d):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def add_rest(x, y, count, rest, layout, waves, found, phases, near, out):
+def add_rest(x, y, count, rest, tiles, store, near, out):
     """Add the rest e at places seen from the middle of the hull to `out`."""
     if rest.smooth:
         eta, gx, gy = rest.touch
         for n in range(count):
             out[n] -= eta + gx * x[n] + gy * y[n]
-        add_elevations(layout, waves, found, phases, rest.place, x, y, count, rest.time, out)
+        add_elevations(tiles, store, rest.place, x, y, count, rest.time, out)
     # each with a literal, so that the processor takes several places at once
     for i in range(rest.near):
         if rest.doubled == 0:
@@ -263,7 +265,7 @@ def _add_wave(x, y, count, swell, i, doubled, out):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, near):
+def waterplane_moments(cuts, count, plane, rest, tiles, store, near):
     """Integrals of e, x e, y e and (plane + e / 2) e over strips of the waterplane.
 
     Each lies between one of `cuts` and the axis of the hull, through its middle along `Rest.ahead`:
@@ -288,7 +290,7 @@ def waterplane_moments(cuts, count, plane, rest, layout, waves, found, phases, n
                     cuts[_PLACE_X + n] = ax * far - ay * (u * aside)
                     cuts[_PLACE_Y + n] = ay * far + ax * (u * aside)
                     cuts[_REST + n] = 0.0
-                add_rest(x, y, count, rest, layout, waves, found, phases, near, e)
+                add_rest(x, y, count, rest, tiles, store, near, e)
                 for n in range(count):
                     aside = ax * cuts[_PLACE_Y + n] - ay * cuts[_PLACE_X + n]
                     e_dA = part * aside * cuts[_REST + n]

@@ -24,9 +24,9 @@ SIDE, REACH, HELD, TURNING, HEIGHT, STEEPNESS, CURVATURE, TWIST, ROUNDING = rang
 PER_SIDE, PER_REACH = 9, 10
 """Numbers of `Tiles.layout`: side of a tile [m]; half the side of the square in which its
 polynomial holds [m]; how many waves tiles hold; the wave number by which ways are divided into
-panels, see `swell.waterplane_moments` [rad/m]; sums of a, a k, a k^2 and a k^3 over all waves, which
-bound elevation, slope, curvature and its change; what the tiles leave out of second derivatives
-[1/m]; and one over the first two [1/m]."""
+panels, see `swell.waterplane_moments` [rad/m]; sums of a, a k, a k^2 and a k^3 over all waves,
+which bound elevation, slope, curvature and its change; what the tiles leave out of second
+derivatives [1/m]; and one over the first two [1/m]."""
 AMPLITUDE, KX, KY, OMEGA, PHASE, SHARES = range(6)
 """Rows of `Tiles.waves`: as the columns of `kernels.waves`; and from SHARES on what the cosine or
 the sine of the phase of each wave in the middle of a tile adds to each coefficient, the cosine to
@@ -39,6 +39,10 @@ DEGREE = 8
 """Degree of the polynomials."""
 NUMBERS = size.py_func(DEGREE)
 """Coefficients of each."""
+RUN = 64
+"""Places at which elevations are found together, at most."""
+LANES = 8
+"""Places that a processor takes at once, or a multiple of that."""
 MIDDLE_X, MIDDLE_Y, INSTANT, FLAT = range(4)
 """Columns of `TileStore.found`: the middle of the tile [m], and the instant, which say which tile
 it is; and from FLAT on its polynomial, in parts of `REACH` from the middle."""
@@ -60,29 +64,32 @@ class TileStore(NamedTuple):
     """Columns `MIDDLE_X` to `FLAT` and behind."""
     phases: Annotated[Doubles, (2, "w")]
     """Cosines and sines in the middle of a tile; scratch."""
+    room: Annotated[Doubles, (3, RUN)]
+    """Places in a tile, in parts of `REACH` from its middle, and the elevations there; scratch."""
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def find_tile(layout, waves, found, phases, x, y, time):
-    """The tile at a place, as its row in the store; the arrays are of `Tiles` and `TileStore`."""
+def find_tile(tiles, store, x, y, time):
+    """The tile at a place, as its row in a store."""
+    layout, found = tiles.layout, store.found
     side, per_side = layout[SIDE], layout[PER_SIDE]
     i, j = math.floor(x * per_side), math.floor(y * per_side)
     t = (int(i) & (ALONG - 1)) * ALONG + (int(j) & (ALONG - 1))
     mx, my = (i + 0.5) * side, (j + 0.5) * side
     if found[t, MIDDLE_X] != mx or found[t, MIDDLE_Y] != my or found[t, INSTANT] != time:
-        _fill(layout, waves, found, phases, t, mx, my, time)
+        _fill(tiles, store, t, mx, my, time)
     return t
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _fill(layout, waves, found, phases, t, x, y, time):
+def _fill(tiles, store, t, x, y, time):
     """Sum the waves up in a tile, whose middle is given."""
-    held = int(layout[HELD])
-    set_phases(waves, held, x, y, time, phases)
+    found, phases, held = store.found, store.phases, int(tiles.layout[HELD])
+    set_phases(tiles.waves, held, x, y, time, phases)
     i = 0
     for m in range(DEGREE + 1):
         for n in range(DEGREE + 1 - m):
-            found[t, FLAT + i] = sum_products(waves, SHARES + i, phases, (m + n) & 1, held)
+            found[t, FLAT + i] = sum_products(tiles.waves, SHARES + i, phases, (m + n) & 1, held)
             i += 1
     found[t, MIDDLE_X], found[t, MIDDLE_Y], found[t, INSTANT] = x, y, time
 
@@ -105,9 +112,9 @@ def sum_products(a, i, b, j, count):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, fastmath={"contract"})
-def tangent_in(layout, found, t, x, y):
+def tangent_in(tiles, store, t, x, y):
     """The elevation of a tile at a place, and its gradient."""
-    scale = layout[PER_REACH]
+    scale, found = tiles.layout[PER_REACH], store.found
     u, v = (x - found[t, MIDDLE_X]) * scale, (y - found[t, MIDDLE_Y]) * scale
     i = FLAT + NUMBERS
     total = along = across = 0.0
@@ -124,9 +131,9 @@ def tangent_in(layout, found, t, x, y):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def second_derivatives_in(layout, found, t, x, y):
+def second_derivatives_in(tiles, store, t, x, y):
     """The second derivatives of the elevation of a tile at a place: xx, xy, yy."""
-    scale = layout[PER_REACH]
+    scale, found = tiles.layout[PER_REACH], store.found
     u, v = (x - found[t, MIDDLE_X]) * scale, (y - found[t, MIDDLE_Y]) * scale
     i = FLAT + NUMBERS
     total = across = xx = xy = yy = along = 0.0
@@ -148,37 +155,42 @@ def second_derivatives_in(layout, found, t, x, y):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def add_elevations(layout, waves, found, phases, place, x, y, count, time, out):
+def add_elevations(tiles, store, place, x, y, count, time, out):
     """Add the elevations of tiles at `count` places x, y from a place to `out`.
 
     As many as follow each other near one tile are found together.
     """
-    x0, y0 = place
-    first, reach = 0, layout[REACH]
+    (x0, y0), scale, room, first = place, tiles.layout[PER_REACH], store.room, 0
     while first < count:
-        t = find_tile(layout, waves, found, phases, x0 + x[first], y0 + y[first], time)
-        mx, my = found[t, MIDDLE_X] - x0, found[t, MIDDLE_Y] - y0
-        last = first + 1
-        while last < count and abs(x[last] - mx) <= reach and abs(y[last] - my) <= reach:
-            last += 1
-        _add_at_many(found, t, mx, my, layout[PER_REACH], x, y, first, last, out)
-        first = last
+        t = find_tile(tiles, store, x0 + x[first], y0 + y[first], time)
+        mx, my, n = store.found[t, MIDDLE_X] - x0, store.found[t, MIDDLE_Y] - y0, 0
+        while n < RUN and first + n < count:
+            u, v = (x[first + n] - mx) * scale, (y[first + n] - my) * scale
+            if abs(u) > 1.0 or abs(v) > 1.0:
+                break
+            room[0, n], room[1, n] = u, v
+            n += 1
+
+        # the last ones may be of no use
+        _set_at_many(store.found, t, room, (n + LANES - 1) // LANES * LANES)
+        for i in range(n):
+            out[first + i] += room[2, i]
+        first += n
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, fastmath={"contract"})
-def _add_at_many(found, t, mx, my, scale, x, y, first, last, out):
-    """Add a tile's polynomial, from its middle, at the places from `first` to `last` to `out`.
+def _set_at_many(found, t, room, count):
+    """Write the polynomial of a tile at `count` places to the last row of the room.
 
     By Horner's rule, whose length is fixed, so that the processor takes several places at once.
     """
-    for n in range(first, last):
-        u, v = (x[n] - mx) * scale, (y[n] - my) * scale
+    for n in range(count):
+        u, v, total = room[0, n], room[1, n], 0.0
         i = FLAT + NUMBERS
-        total = 0.0
         for m in range(DEGREE, -1, -1):
             row = 0.0
             for _ in range(DEGREE - m + 1):
                 i -= 1
                 row = row * v + found[t, i]
             total = total * u + row
-        out[n] += total
+        room[2, n] = total

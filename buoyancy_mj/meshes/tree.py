@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.kernels import rules
 from buoyancy_mj.kernels import tree as kernels
 
 LEAF = 32
@@ -60,3 +61,10 @@ def build_tree(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Tree:
     used = np.empty(3 * n, np.int64)
     count = kernels.spread(faces, spans, len(vertices), used)
     return Tree(vertices[used[:count]], faces, spans, boxes, moments, vectors)
+
+
+def find_rules(of: Tree) -> NDArray[np.float64]:
+    """The rule of each node (n, 3 p), see `kernels.rules` [m^2]."""
+    found = np.empty((len(of.spans), 3 * rules.POINTS))
+    rules.find_rules(of.vertices[of.faces], of.spans, of.boxes, found)
+    return found

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import MethodError, describe
-from buoyancy_mj.kernels import clip, pressure, tree, waterplane
+from buoyancy_mj.kernels import clip, pressure, rules, tree, waterplane
 from buoyancy_mj.kernels.arrays import conform
 from buoyancy_mj.kernels.hulls import WHOLE_VOLUME, Hulls
 from buoyancy_mj.kernels.multibody import Geoms
@@ -19,7 +19,7 @@ from buoyancy_mj.meshes import tree as meshes_tree
 from buoyancy_mj.meshes.cache import Form, recall
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.meshes.refinement import refine
-from buoyancy_mj.meshes.tree import Tree, build_tree
+from buoyancy_mj.meshes.tree import Tree, build_tree, find_rules
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.submersion.hull_set import HullSet
 from buoyancy_mj.submersion.sea_tiles import lay_blocks, lay_tiles
@@ -29,6 +29,7 @@ from buoyancy_mj.values import set_number
 FINEST = 1e-8
 """Least tolerance; sums over that many triangles round off about so much."""
 _TREES = Form("tree", Tree._asdict, lambda arrays: Tree(**arrays))
+_RULES = Form("rules", lambda rules: {"rules": rules}, lambda arrays: arrays["rules"])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -87,7 +88,9 @@ class PackedHulls:
         self._sea = sea_arrays(water)
         check_waves(max(0.5 * float(np.linalg.norm(m.extents)) for m in meshes), self._sea.waves)
         edges, allowed = find_longest_edges(meshes, hulls.bodies, water, tolerance)
-        trees = [_tree(mesh, edge) for mesh, edge in zip(meshes, edges, strict=True)]
+        self._meshes = list(zip(meshes, edges, strict=True))
+        self._fills = fills
+        trees = [_tree(*each) for each in self._meshes]
         self.hulls: Hulls = conform(
             _hulls(meshes, trees, fills, hulls.frames, self._sea.waves, allowed)
         )
@@ -103,6 +106,13 @@ class PackedHulls:
         """Volume that the whole meshes displace (h,) [m^3]."""
         self.results = np.zeros((len(meshes), clip.COLUMNS))
         """Last submersion of each hull (h, 8), see `methods.Packed.results`."""
+
+    def find_rules(self) -> None:
+        """Find by which rules pressures are summed over the nodes of `hulls`, if not known yet."""
+        if not len(self.hulls.rules):
+            kept, _ = _tell_apart([_tree(*each) for each in self._meshes], self._fills)
+            found = [self._fills[h] * _rules(*self._meshes[h]) for h in kept]
+            self.hulls = self.hulls._replace(rules=np.concatenate(found))
 
     def new_scratches(self, count: int) -> list[Scratch]:
         """Arrays for kernels to work in, for so many threads."""
@@ -138,6 +148,7 @@ class PackedHulls:
         dynamic: bool,
     ) -> NDArray[np.float64]:
         """Pressure on all hulls (h, 6), see `kernels.pressure.press_hulls`."""
+        self.find_rules()
         rows = np.empty((len(self.volumes), 6))
         model = PressureModel.froude_krylov if dynamic else PressureModel.hydrostatic
         pressure.press_hulls(
@@ -194,11 +205,7 @@ def _hulls(
 
     Straight edges that lie in the surface may be off by so much [m], as is allowed for each hull.
     """
-    # one of each, whatever the number of hulls that share it
-    keys = [(id(tree), fill) for tree, fill in zip(trees, fills, strict=True)]
-    first_of = {key: h for h, key in reversed(list(enumerate(keys)))}
-    kept = sorted(first_of.values())
-    place_of = {keys[h]: place for place, h in enumerate(kept)}
+    kept, places = _tell_apart(trees, fills)
     trees, parts = [trees[h] for h in kept], fills[kept]
 
     first_vertex = np.cumsum([0, *(len(t.vertices) for t in trees)])
@@ -224,10 +231,11 @@ def _hulls(
         faces,
         shares * vectors,
         np.linalg.norm(vectors, axis=1),
-        first_node[[place_of[key] for key in keys]],
+        first_node[places],
         np.concatenate(spans),
         np.concatenate([t.boxes for t in trees]),
         moments,
+        np.zeros((0, 3 * rules.POINTS)),
         np.concatenate([_measure_leaves(t) for t in trees]),
         np.array([_whole(*each) for each in zip(meshes, fills, allowed, strict=True)]),
         pressure.typical(waves),
@@ -235,6 +243,15 @@ def _hulls(
         lay_blocks(waves, radii),
         frames,
     )
+
+
+def _tell_apart(trees: Sequence[Tree], fills: NDArray[np.float64]) -> tuple[list[int], list[int]]:
+    """The first hull of each tree that displaces in one part, and which of these each hull is."""
+    keys = [(id(tree), fill) for tree, fill in zip(trees, fills, strict=True)]
+    first_of = {key: h for h, key in reversed(list(enumerate(keys)))}
+    kept = sorted(first_of.values())
+    place_of = {keys[h]: place for place, h in enumerate(kept)}
+    return kept, [place_of[key] for key in keys]
 
 
 def _whole(mesh: TriMesh, fill: float, allowed: float) -> list[float]:
@@ -255,10 +272,18 @@ def _measure_leaves(of: Tree) -> NDArray[np.float64]:
 
 def _tree(mesh: TriMesh, edge: float) -> Tree:
     """The tree of a mesh with edges no longer than `edge` [m], built once for each."""
+    return recall(
+        _TREES, _parts(mesh, edge), lambda: build_tree(*refine(mesh.vertices, mesh.faces, edge))
+    )
+
+
+def _rules(mesh: TriMesh, edge: float) -> NDArray[np.float64]:
+    """The rules of its nodes."""
+    return recall(_RULES, _parts(mesh, edge), lambda: find_rules(_tree(mesh, edge)))
+
+
+def _parts(mesh: TriMesh, edge: float) -> tuple[object, ...]:
+    """What a tree depends on."""
     if math.isfinite(edge) and edge >= mesh.longest_edge:
         edge = math.inf
-    return recall(
-        _TREES,
-        (mesh.checksum, edge, meshes_tree.FEW, meshes_tree.LEAF),
-        lambda: build_tree(*refine(mesh.vertices, mesh.faces, edge)),
-    )
+    return mesh.checksum, edge, meshes_tree.FEW, meshes_tree.LEAF
