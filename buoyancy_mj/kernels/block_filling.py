@@ -21,8 +21,6 @@ from buoyancy_mj.kernels.blocks import (
     HEAD,
     INSTANT,
     LESS,
-    LEVEL,
-    LINE,
     MIDDLE_X,
     MIDDLE_Y,
     MIDDLE_Z,
@@ -50,10 +48,10 @@ from buoyancy_mj.kernels.blocks import (
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.polynomials import (
     deepen,
+    differentiate,
+    in_plane,
+    in_space,
     on_powers,
-    set_at_many,
-    set_in_space_at_many,
-    size,
 )
 from buoyancy_mj.kernels.series import exponential
 from buoyancy_mj.kernels.still_water import settle
@@ -81,14 +79,13 @@ def fill(sea, blocks, store, b, x, y, z, time):
     for n in range(SAMPLES):
         for c in range(3):
             room[c, n] = reach * blocks.points[c, n]
-    set_at_many(
-        solid, size(WAVE_DEGREE), WAVE_DEGREE, room[X], room[Y], SAMPLES, room[LINE], room[ETA]
-    )
+    for n in range(SAMPLES):
+        room[ETA, n] = in_plane(solid, 0, WAVE_DEGREE, room[X, n], room[Y, n])
 
     # about the height at which the water in the middle stood in still water
     still = _guess(z, solid[0], layout[FALL], layout[DEPTH])
     _set_sums(blocks, sums, store.line, solid, still)
-    _set_heads(layout, store.line, solid, room, z, still, _sum_tide(blocks, sums))
+    _set_heads(layout, store, z, still, _sum_tide(blocks, sums))
     for i in range(NUMBERS):
         found[b, HEAD + i] = sum_products(blocks.fit, i, room, FOUND, SAMPLES)
     found[b, MIDDLE_X], found[b, MIDDLE_Y], found[b, MIDDLE_Z] = x, y, z
@@ -173,30 +170,35 @@ def _sum_tide(blocks, sums):
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)
-def _set_heads(layout, line, solid, room, z, still, tide):
+def _set_heads(layout, store, z, still, tide):
     """Write the heads of waves at the points to row FOUND."""
+    line, solid, room = store.line, store.solid, store.room
     eta, guess, away = room[ETA], room[STILL], room[AWAY]
     for n in range(SAMPLES):
         guess[n] = _guess(z + room[Z, n], eta[n], layout[FALL], layout[DEPTH])
         away[n] = guess[n] - still
         room[OVER, n] = room[BEND, n] = 0.0
         room[LESS, n] = on_powers(line, POWERS, away[n])
-    x, y, row, level = room[X], room[Y], room[LINE], room[LEVEL]
-    set_in_space_at_many(
-        solid, SOLID, WAVE_DEGREE, x, y, away, SAMPLES, row, level,
-        room[UP], room[STRAIN],
-    )  # fmt: skip
+    _set_values_and_slopes(solid, SOLID, store.slope, room, room[UP], room[STRAIN])
     if layout[SHALLOW] > 0.0:
-        set_in_space_at_many(
-            solid, 2 * SOLID, WAVE_DEGREE, x, y, away, SAMPLES, row, level,
-            room[OVER], room[BEND],
-        )  # fmt: skip
+        _set_values_and_slopes(solid, 2 * SOLID, store.slope, room, room[OVER], room[BEND])
     whole = layout[WHOLE]
     for n in range(SAMPLES):
         room[FOUND, n] = settle(
             z + room[Z, n], guess[n], room[UP, n], room[STRAIN, n], room[OVER, n],
             room[BEND, n], tide, room[LESS, n], whole,
         )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath={"contract"})
+def _set_values_and_slopes(solid, start, slope, room, out, out_slope):
+    """Write what a polynomial, from `start` on, is at the points, and its slope along z."""
+    differentiate(solid, start, WAVE_DEGREE, slope)
+    x, y, z = room[X], room[Y], room[AWAY]
+    for n in range(SAMPLES):
+        out[n] = in_space(solid, start, WAVE_DEGREE, x[n], y[n], z[n])
+    for n in range(SAMPLES):
+        out_slope[n] = in_space(slope, 0, WAVE_DEGREE - 1, x[n], y[n], z[n])
 
 
 @njit(cache=True, error_model="numpy", inline="always")

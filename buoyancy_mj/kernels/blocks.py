@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 
 from buoyancy_mj.kernels.arrays import Doubles
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.polynomials import size, size_in_space
+from buoyancy_mj.kernels.polynomials import in_space, size, size_in_space
 
 SIDE, REACH, FALL, DEPTH, WHOLE, TIDAL, SHALLOW = range(7)
 """Numbers of `Blocks.layout`: side of a block [m]; half the side of the cube in which its
@@ -42,11 +42,10 @@ MIDDLE_X, MIDDLE_Y, MIDDLE_Z, INSTANT, HEAD = range(5)
 """Columns of `BlockStore.found`: the middle of a block, from the still level [m], and the instant,
 which say which block it is; and from HEAD on its polynomial, in parts of `REACH` from the middle.
 """
-X, Y, Z, ETA, STILL, AWAY, UP, STRAIN, OVER, BEND, LESS, LINE, LEVEL, FOUND, ROOM = range(15)
+X, Y, Z, ETA, STILL, AWAY, UP, STRAIN, OVER, BEND, LESS, FOUND, ROOM = range(13)
 """Rows of `BlockStore.room`, and how many: places; the elevation there; a guess of the height in
 still water, and that from the middle; the water's rise and its slope, the rest of the head and its
-slope, and what the waves take off the mean head, as in `still_water.settle`; two of scratch; the
-head."""
+slope, and what the waves take off the mean head, as in `still_water.settle`; the head."""
 
 
 class Blocks(NamedTuple):
@@ -74,6 +73,8 @@ class BlockStore(NamedTuple):
     """Rows `X` to `FOUND` at places; scratch."""
     solid: Annotated[Doubles, (3 * SOLID,)]
     """Polynomials of the elevation, of the rise and of the rest of the head; scratch."""
+    slope: Annotated[Doubles, (SOLID,)]
+    """The slope of one of the latter along z; scratch."""
     line: Annotated[Doubles, (POWERS + 1,)]
     """That of what the waves take off the mean head; scratch."""
 
@@ -98,19 +99,8 @@ def is_known(found, b, x, y, z, time):
 def set_heads_in(found, b, room, count):
     """Write the head of a block at `count` places, rows `X` to `Z` of the room, to row `FOUND`.
 
-    They are in parts of `REACH` from its middle. By Horner's rule, whose length is fixed, so that
-    the processor takes several places at once.
+    They are in parts of `REACH` from its middle.
     """
+    polynomial = found[b]
     for n in range(count):
-        u, v, w, total = room[X, n], room[Y, n], room[Z, n], 0.0
-        i = HEAD + NUMBERS
-        for p in range(DEGREE, -1, -1):
-            level = 0.0
-            for m in range(DEGREE - p, -1, -1):
-                row = 0.0
-                for _ in range(DEGREE - p - m + 1):
-                    i -= 1
-                    row = row * v + found[b, i]
-                level = level * u + row
-            total = total * w + level
-        room[FOUND, n] = total
+        room[FOUND, n] = in_space(polynomial, HEAD, DEGREE, room[X, n], room[Y, n], room[Z, n])

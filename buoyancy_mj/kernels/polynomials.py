@@ -1,6 +1,9 @@
 """Polynomials in x, y and in x, y, z, whose coefficients stand one after the other in an array.
 
 The coefficients of x^m y^n stand in order of m, then n; those of z^p x^m y^n of p, then m, then n.
+
+Where the degree is a constant the compiler unrolls Horner's rule, and a loop over places takes
+several of them at once.
 """
 
 from buoyancy_mj.kernels.compiling import njit
@@ -27,42 +30,44 @@ def on_powers(line, degree, z):
     return total
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
-def set_in_space_at_many(solid, start, degree, x, y, z, count, row, level, out, slope):
-    """Write a polynomial in x, y, z at `count` places to `out`, and its slope along z to `slope`.
-
-    `row` and `level` are scratch.
-    """
-    for v in range(count):
-        out[v] = slope[v] = 0.0
-    i = start + size_in_space(degree)
-    for p in range(degree, -1, -1):
-        i = set_at_many(solid, i, degree - p, x, y, count, row, level)
-        for v in range(count):
-            slope[v] = slope[v] * z[v] + out[v]
-            out[v] = out[v] * z[v] + level[v]
+@njit(cache=True, error_model="numpy", inline="always")
+def in_plane(flat, start, degree, x, y):
+    """A polynomial in x, y, by Horner's rule, whose coefficients stand from `start` on."""
+    i, total = start + size(degree), 0.0
+    for m in range(degree, -1, -1):
+        row = 0.0
+        for _ in range(degree - m + 1):
+            i -= 1
+            row = row * y + flat[i]
+        total = total * x + row
+    return total
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def set_at_many(flat, end, degree, x, y, count, row, total):
-    """Write a polynomial in x, y at many places to `total`.
+def in_space(solid, start, degree, x, y, z):
+    """A polynomial in x, y, z, by Horner's rule, whose coefficients stand from `start` on."""
+    i, total = start + size_in_space(degree), 0.0
+    for p in range(degree, -1, -1):
+        level = 0.0
+        for m in range(degree - p, -1, -1):
+            row = 0.0
+            for _ in range(degree - p - m + 1):
+                i -= 1
+                row = row * y + solid[i]
+            level = level * x + row
+        total = total * z + level
+    return total
 
-    Its coefficients end before `end`. Returns where they begin.
-    """
-    i = end
-    for v in range(count):
-        total[v] = 0.0
-    for m in range(degree, -1, -1):
-        for v in range(count):
-            row[v] = 0.0
-        for _ in range(degree - m + 1):
-            i -= 1
-            c = flat[i]
-            for v in range(count):
-                row[v] = row[v] * y[v] + c
-        for v in range(count):
-            total[v] = total[v] * x[v] + row[v]
-    return i
+
+@njit(cache=True, error_model="numpy", _nrt=False)
+def differentiate(solid, start, degree, out):
+    """Write the derivative along z of a polynomial, from `start` on, to the begin of `out`."""
+    i, n = start + size(degree), 0
+    for p in range(1, degree + 1):
+        for _ in range(size(degree - p)):
+            out[n] = p * solid[i]
+            i += 1
+            n += 1
 
 
 @njit(cache=True, error_model="numpy", _nrt=False)

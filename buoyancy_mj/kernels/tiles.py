@@ -17,7 +17,7 @@ from typing import Annotated, NamedTuple
 
 from buoyancy_mj.kernels.arrays import Doubles
 from buoyancy_mj.kernels.compiling import njit
-from buoyancy_mj.kernels.polynomials import size
+from buoyancy_mj.kernels.polynomials import in_plane, size
 from buoyancy_mj.kernels.series import turn
 
 SIDE, REACH, HELD, TURNING, HEIGHT, STEEPNESS, CURVATURE, TWIST, ROUNDING = range(9)
@@ -180,17 +180,7 @@ def add_elevations(tiles, store, place, x, y, count, time, out):
 
 @njit(cache=True, error_model="numpy", _nrt=False, fastmath={"contract"})
 def _set_at_many(found, t, room, count):
-    """Write the polynomial of a tile at `count` places to the last row of the room.
-
-    By Horner's rule, whose length is fixed, so that the processor takes several places at once.
-    """
+    """Write the polynomial of a tile at `count` places to the last row of the room."""
+    polynomial = found[t]
     for n in range(count):
-        u, v, total = room[0, n], room[1, n], 0.0
-        i = FLAT + NUMBERS
-        for m in range(DEGREE, -1, -1):
-            row = 0.0
-            for _ in range(DEGREE - m + 1):
-                i -= 1
-                row = row * v + found[t, i]
-            total = total * u + row
-        room[2, n] = total
+        room[2, n] = in_plane(polynomial, FLAT, DEGREE, room[0, n], room[1, n])
