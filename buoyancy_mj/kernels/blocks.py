@@ -18,11 +18,11 @@ SIDE, REACH, FALL, DEPTH, WHOLE, TIDAL, SHALLOW = range(7)
 polynomial holds [m]; `still_water.decay` of the waves; the depth of the water; what the waves take
 off the mean head at the still level; whether all the water rises and falls; whether any wave feels
 the bottom."""
-DEGREE = 4
+DEGREE = 5
 """Degree of the polynomial of the head."""
-WAVE_DEGREE = 5
+WAVE_DEGREE = 6
 """Degree of the polynomials of what waves sum up to."""
-POWERS = 6
+POWERS = 8
 """Degree of the polynomial of what the waves take off the mean head."""
 NUMBERS = size_in_space.py_func(DEGREE)
 """Coefficients of the head."""
@@ -34,7 +34,7 @@ K, BOTTOM, SQUARE, TIDE, TAYLOR = range(5)
 """Rows of `Blocks.waves`: wave number [rad/m]; `still_water.seabed`; k tanh(k h) a^2 / 2; the
 amplitude of what raises all the water, else 0; and from TAYLOR on what the cosine or the sine of
 the phase adds to each coefficient of a layer."""
-SAMPLES = 64
+SAMPLES = 112
 """Points at which the head in a block is found."""
 ALONG, DOWN = 16, 4
 """Blocks along a side of the store, and along its height."""

@@ -131,9 +131,9 @@ def _fit(rows: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
 # blocks
 
 
-BLOCK = 0.5
+BLOCK = 0.8
 """Half the side of the cube in which the polynomial of a block holds, times the wave number whose
-fifth derivatives are as large as those of all waves."""
+sixth derivatives are as large as those of all waves."""
 
 
 def lay_blocks(waves: NDArray[np.float64], radii: Sequence[float]) -> Blocks:
@@ -145,7 +145,7 @@ def lay_blocks(waves: NDArray[np.float64], radii: Sequence[float]) -> Blocks:
     """
     rows = waves[_order(waves)]
     square, k = rows[:, AMPLITUDE] ** 2, np.hypot(rows[:, KX], rows[:, KY])
-    steep = ((square @ k**10) / square.sum()) ** 0.1 if square.any() else 0.0
+    steep = ((square @ k**12) / square.sum()) ** (1.0 / 12.0) if square.any() else 0.0
     reach = min(BLOCK / steep if steep else math.inf, 0.5 * max(radii))
     bottoms = np.array([seabed.py_func(*pair) for pair in zip(k, rows[:, DEPTH], strict=True)])
     tanh = (1.0 - bottoms) / (1.0 + bottoms)
@@ -176,8 +176,8 @@ def _block_fitting() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
     The points are every other one of Chebyshev's in a cube.
     """
-    line = np.cos(np.arange(5) * math.pi / 4.0)
-    grid = np.array(list(itertools.product(range(5), repeat=3)))
+    line = np.cos(np.arange(blocks.DEGREE + 1) * math.pi / blocks.DEGREE)
+    grid = np.array(list(itertools.product(range(len(line)), repeat=3)))
     points = line[grid[grid.sum(axis=1) % 2 == 0]].T
     powers = [
         points[2] ** p * points[0] ** m * points[1] ** n
