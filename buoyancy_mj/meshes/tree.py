@@ -10,7 +10,7 @@ from buoyancy_mj.kernels import tree as kernels
 
 LEAF = 32
 """Most triangles of a leaf."""
-FEW = 1000
+FEW = 300
 """Number of triangles below which one leaf is as fast as a tree."""
 
 

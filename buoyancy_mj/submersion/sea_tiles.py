@@ -131,7 +131,7 @@ def _fit(rows: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
 # blocks
 
 
-BLOCK = 0.8
+BLOCK = 0.7
 """Half the side of the cube in which the polynomial of a block holds, times the wave number whose
 sixth derivatives are as large as those of all waves."""
 
