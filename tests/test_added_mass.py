@@ -333,18 +333,18 @@ def test_acceleration_is_the_rate_of_the_velocity_of_the_water_as_it_moves():
                 RegularWave(scale, wavelength=5.0, direction=0.7),
                 RegularWave(2.0 * scale, period=3.0, depth=4.0),
             ]
-        ).rows
-        deep = Water(waves=RegularWave(10.0 * scale, wavelength=2.0 * math.pi)).rows
-        for rows, point in (
+        ).table
+        deep = Water(waves=RegularWave(10.0 * scale, wavelength=2.0 * math.pi)).table
+        for sea, point in (
             (waves, (0.3, 0.2, -0.1)),
             (waves, (0.3, 0.2, -0.5)),
             (waves, (2.0, -1.0, -3.0)),
             (deep, (0.3, 0.0, -3.0)),
         ):
             at, rate, ends = np.zeros(3), np.zeros(3), np.zeros((2, 3))
-            add_motion(rows, *point, 1.0, at, rate)
+            add_motion(sea, *point, 1.0, at, rate)
             for end, step in zip(ends, (1e-5, -1e-5), strict=True):
-                add_velocity(rows, *(point + step * at), 1.0 + step, end)
+                add_velocity(sea, *(point + step * at), 1.0 + step, end)
             error = rate - (ends[0] - ends[1]) / 2e-5
             left.setdefault(point, []).append(np.abs(error).max())
     for point, (one, two) in left.items():

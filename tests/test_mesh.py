@@ -100,6 +100,10 @@ def test_refining_keeps_the_surface_and_shortens_its_edges(size, edge):
     assert (fine.face_normals[:, :] @ fine.face_normals[0]).max() == pytest.approx(1.0)
     a, b, c = vertices[faces.T]
     assert max(np.linalg.norm(side, axis=1).max() for side in (b - a, c - b, a - c)) <= 1.4 * edge
+
+    # neighbours have the same edges, but for the rounding of their ends
+    _, same = np.unique(vertices.round(9), axis=0, return_inverse=True)
+    assert trimesh.Trimesh(vertices, same.ravel()[faces], process=False).is_watertight
     assert len(faces) < 40.0 * (mesh.area / edge**2 + sum(size) / edge)
 
 

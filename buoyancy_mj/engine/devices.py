@@ -26,6 +26,7 @@ from buoyancy_mj.kernels.entries.views import Table
 from buoyancy_mj.kernels.paths import PATHS
 from buoyancy_mj.kernels.sea import PressureModel, Sea
 from buoyancy_mj.kernels.vehicle.devices import ALIVE, CHANGES, IDS, MODEL, Device
+from buoyancy_mj.kernels.waves import ROWS
 
 _WORD = ctypes.c_int64
 _thread = threading.local()
@@ -156,7 +157,7 @@ def _take_burst(model: int, data: int, instance: int) -> "_Burst":
 def _dry_sea() -> Table[Sea]:
     """A sea whose surface is below everything."""
     nothing = Sea(
-        waves=np.zeros((0, 7)),
+        waves=np.zeros((ROWS, 0)),
         current=np.zeros((1, 5)),
         density=0.0,
         level=-math.inf,

@@ -84,7 +84,7 @@ class LoadModel:
     @functools.cached_property
     def has_wave_pressure(self) -> bool:
         """Whether the pressure differs from Archimedes': on still water it does not."""
-        return "wave_pressure" in self.causes and len(self.arrays.sea.waves) > 0
+        return "wave_pressure" in self.causes and self.arrays.sea.waves.shape[1] > 0
 
     @functools.cached_property
     def scratch(self) -> Scratch:

@@ -120,7 +120,7 @@ def add_ballast(
         if ballast.kinds[n] == BLADDER:
             share = volume / ballast.fills.volumes[n]
             weight = share * sea.density * gravity
-            wavy = sea.pressure != 0 and sea.waves.shape[0] > 0
+            wavy = sea.pressure != 0 and sea.waves.shape[1] > 0
             origin = geoms.geom_xpos[geom]
             _add_bladder(ballast.rows[n], weight, wavy, wet, heads, origin, com, out[b])
             continue

@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import place, rotate_back, triple
-from buoyancy_mj.kernels.waves import elevation, tangent
+from buoyancy_mj.kernels.waves import ROWS, elevation, tangent
 
 BODY, FIRST, LAST, NEXT, SPAN = range(5)
 """Columns of a box's words: its body, its first corner and the one after its last, and the box that
@@ -34,8 +34,8 @@ class Corners(NamedTuple):
     """Where the boxes are [m]."""
     root: int
     """Index of the root body."""
-    waves: Annotated[Doubles, ("w", 7)]
-    """Rows of waves."""
+    waves: Annotated[Doubles, (ROWS, "w")]
+    """The waves, see `kernels.waves`."""
     level: float
     """Height of the still surface [m]."""
     curvature: float

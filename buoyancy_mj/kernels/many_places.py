@@ -13,6 +13,8 @@ from buoyancy_mj.kernels.currents import set_current, set_rate
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.waves import (
     AMPLITUDE,
+    KX,
+    KY,
     OMEGA,
     PHASE,
     add_motion,
@@ -29,9 +31,9 @@ def elevations(waves, x, y, time, out):
     Several are found at once, by cos a = 1 - 2 sin^2 a/2.
     """
     out[:] = 0.0
-    for w in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, w, AMPLITUDE)
-        phase = waves[w, PHASE] - waves[w, OMEGA] * time
+    for w in range(waves.shape[1]):
+        amplitude, kx, ky = waves[AMPLITUDE, w], waves[KX, w], waves[KY, w]
+        phase = waves[PHASE, w] - waves[OMEGA, w] * time
         for i in range(x.shape[0]):
             out[i] += amplitude * _cosine(kx * x[i] + ky * y[i] + phase)
 
@@ -40,9 +42,9 @@ def elevations(waves, x, y, time, out):
 def elevations_at(waves, x, y, times, out):
     """Write `waves.elevation` at points x, y (n,), each at its own time (n,), to `out` (n,)."""
     out[:] = 0.0
-    for w in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, w, AMPLITUDE)
-        omega, phase = waves[w, OMEGA], waves[w, PHASE]
+    for w in range(waves.shape[1]):
+        amplitude, kx, ky = waves[AMPLITUDE, w], waves[KX, w], waves[KY, w]
+        omega, phase = waves[OMEGA, w], waves[PHASE, w]
         for i in range(x.shape[0]):
             out[i] += amplitude * _cosine(kx * x[i] + ky * y[i] + (phase - omega * times[i]))
 

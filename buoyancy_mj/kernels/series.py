@@ -83,13 +83,15 @@ def turn(angle):
     cosine = 1.0 + q * (
         _C2 + q * (_C4 + q * (_C6 + q * (_C8 + q * (_C10 + q * (_C12 + q * (_C14 + q * _C16))))))
     )
-    # which quarter it is, as 0 to 3
-    quarter = quarters - 4.0 * math.floor(0.25 * quarters)
-    odd = quarter == 1.0 or quarter == 3.0
-    first, second = (sine, cosine) if odd else (cosine, sine)
+    # whether it is an odd quarter, and whether each is turned about: 0 or 1
+    half = math.floor(0.5 * quarters)
+    odd = quarters - 2.0 * half
+    even = 1.0 - odd
+    back = half + odd - 2.0 * math.floor(0.5 * (half + odd))
+    down = half - 2.0 * math.floor(0.5 * half)
     return (
-        -first if quarter == 1.0 or quarter == 2.0 else first,
-        -second if quarter >= 2.0 else second,
+        (1.0 - 2.0 * back) * (even * cosine + odd * sine),
+        (1.0 - 2.0 * down) * (even * sine + odd * cosine),
     )
 
 

@@ -16,7 +16,7 @@ def place(
     origin,  # (3,) of the frame in the world
     r,  # (9,) world_from_frame, row-major
     level,
-    waves,  # (w, 7)
+    waves,  # see `waves`
     time,
     out,  # (>= n, 4) x, y, z relative to the origin, turned as the world, and depth
 ):

@@ -1,12 +1,16 @@
-"""Airy waves as rows of numbers: elevation, pressure, orbital velocity and acceleration at a place.
+"""Airy waves as a table of numbers: elevation, pressure, velocity and acceleration at a place.
 
-Sums over the waves are written without branches and may be taken in any order, so that the
-processor takes several waves at once.
+Each wave is a column of the table, so that the numbers of a row lie side by side. Sums over the
+waves are written without branches and may be taken in any order, so that the processor takes
+several waves at once.
 
-A row with kx = ky = 0 is the whole level going up and down, the limit of an infinitely long wave.
+A wave with kx = ky = 0 is the whole level going up and down, the limit of an infinitely long wave.
 """
 
 import math
+
+import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.series import turn
@@ -20,30 +24,37 @@ from buoyancy_mj.kernels.still_water import (
     settle,
     still_height,
 )
-from buoyancy_mj.kernels.vectors import triple
 
 ANY_ORDER = {"reassoc", "contract"}
 """What the compiler may do with sums over the waves."""
 
-AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH, SIGMA = range(7)
-"""Columns of a row: amplitude [m], wave vector (2) [rad/m], angular frequency at a fixed place
-[rad/s], phase at the origin at time 0 [rad], the depth of the water [m], and the angular frequency
-as the water sees it, which drifts with the current [rad/s]."""
+AMPLITUDE, KX, KY, OMEGA, PHASE, DEPTH, SIGMA, K, BOTTOM, ROWS = range(10)
+"""Rows of the table, and how many: amplitude [m], wave vector (2) [rad/m], angular frequency at a
+fixed place [rad/s], phase at the origin at time 0 [rad], the depth of the water [m], the angular
+frequency as the water sees it, which drifts with the current [rad/s], wave number [rad/m], and what
+`still_water.seabed` says. The first seven are columns of `Water.rows`."""
+
+
+def tabulate(rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The table (ROWS, w) of waves whose first seven numbers are given as rows (w, 7)."""
+    k = np.hypot(rows[:, KX], rows[:, KY])
+    bottoms = [seabed.py_func(*pair) for pair in zip(k, rows[:, DEPTH], strict=True)]
+    return np.ascontiguousarray(np.vstack([rows.T, k, bottoms]))
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def phase_at(waves, w, x, y, time):
     """Phase of a wave at a place."""
-    return waves[w, KX] * x + waves[w, KY] * y - waves[w, OMEGA] * time + waves[w, PHASE]
+    return waves[KX, w] * x + waves[KY, w] * y - waves[OMEGA, w] * time + waves[PHASE, w]
 
 
 @njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def elevation(waves, x, y, time):
-    """Sum of the rows' elevations [m] above the still level at one horizontal point."""
+    """Sum of the elevations [m] above the still level at one horizontal point."""
     total = 0.0
-    for i in range(waves.shape[0]):
+    for i in range(waves.shape[1]):
         cosine, _ = turn(phase_at(waves, i, x, y, time))
-        total += waves[i, AMPLITUDE] * cosine
+        total += waves[AMPLITUDE, i] * cosine
     return total
 
 
@@ -51,12 +62,12 @@ def elevation(waves, x, y, time):
 def tangent(waves, x, y, time):
     """Elevation over the still level at a place, and its gradient."""
     eta = along = across = 0.0
-    for i in range(waves.shape[0]):
+    for i in range(waves.shape[1]):
         cosine, sine = turn(phase_at(waves, i, x, y, time))
-        slope = waves[i, AMPLITUDE] * sine
-        eta += waves[i, AMPLITUDE] * cosine
-        along -= waves[i, KX] * slope
-        across -= waves[i, KY] * slope
+        slope = waves[AMPLITUDE, i] * sine
+        eta += waves[AMPLITUDE, i] * cosine
+        along -= waves[KX, i] * slope
+        across -= waves[KY, i] * slope
     return eta, along, across
 
 
@@ -78,16 +89,16 @@ def head(waves, x, y, z, time, dynamic):
         return eta - z
     still = still_height(z, eta, fall, depth)
     rise = strain = rest = rest_strain = mean = whole = tide = 0.0
-    for i in range(waves.shape[0]):
+    for i in range(waves.shape[1]):
         cosine, _ = turn(phase_at(waves, i, x, y, time))
-        a = waves[i, AMPLITUDE] * cosine
-        k = math.sqrt(waves[i, KX] * waves[i, KX] + waves[i, KY] * waves[i, KY])
-        wide, narrow, tanh = fade(k, seabed(k, waves[i, DEPTH]), still)
+        a = waves[AMPLITUDE, i] * cosine
+        k = waves[K, i]
+        wide, narrow, tanh = fade(k, waves[BOTTOM, i], still)
         rise += a * narrow
         strain += a * k * wide
         rest += a * (wide * tanh - narrow)
         rest_strain += a * k * (narrow * tanh - wide)
-        square = 0.5 * waves[i, AMPLITUDE] * waves[i, AMPLITUDE] * k * tanh
+        square = 0.5 * waves[AMPLITUDE, i] * waves[AMPLITUDE, i] * k * tanh
         mean += square * narrow * narrow
         whole += square
         tide += a if k == 0.0 else 0.0
@@ -99,18 +110,18 @@ def survey(waves, x, y, time):
     """Elevation at a place, how fast the waves fade with depth [1/m], and the water's depth [m]."""
     eta = weighted = energy = 0.0
     depth = math.inf
-    for i in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, i, AMPLITUDE)
+    for i in range(waves.shape[1]):
+        amplitude = waves[AMPLITUDE, i]
         cosine, _ = turn(phase_at(waves, i, x, y, time))
         eta += amplitude * cosine
         energy += amplitude * amplitude
-        weighted += amplitude * amplitude * math.sqrt(kx * kx + ky * ky)
-    for i in range(waves.shape[0]):
-        depth = min(depth, waves[i, DEPTH])
+        weighted += amplitude * amplitude * waves[K, i]
+    for i in range(waves.shape[1]):
+        depth = min(depth, waves[DEPTH, i])
     return eta, decay(weighted / energy if energy > 0.0 else 0.0, depth), depth
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def add_velocity(waves, x, y, z, time, out):
     """Add the waves' velocity [m/s] at height z above the still level to `out` (3,).
 
@@ -122,7 +133,7 @@ def add_velocity(waves, x, y, z, time, out):
     out[2] += w
 
 
-@njit(cache=True, error_model="numpy", _nrt=False)
+@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
 def add_motion(waves, x, y, z, time, velocity, acceleration):
     """Add the waves' velocity [m/s] and acceleration [m/s^2] to `velocity` and `acceleration` (3,).
 
@@ -142,9 +153,12 @@ def add_motion(waves, x, y, z, time, velocity, acceleration):
     acceleration[2] += dw
 
 
-@njit(cache=True, error_model="numpy", _nrt=False, fastmath=ANY_ORDER)
+@njit(cache=True, error_model="numpy", inline="always")
 def _motion(waves, x, y, z, time):
-    """The waves' velocity (3) and acceleration (3) at a place."""
+    """The waves' velocity (3) and acceleration (3) at a place.
+
+    It is compiled into its callers, where what nobody reads is left out.
+    """
     eta, fall, depth = survey(waves, x, y, time)
     still = still_height(z, eta, fall, depth)
 
@@ -154,13 +168,12 @@ def _motion(waves, x, y, z, time):
     u_z = v_z = w_z = du_z = dv_z = dw_z = 0.0
     rise = strain = along = across = tide = 0.0
     mean = whole = mean_z = drift_x = drift_y = 0.0
-    for i in range(waves.shape[0]):
-        amplitude, kx, ky = triple(waves, i, AMPLITUDE)
-        sigma = waves[i, SIGMA]
+    for i in range(waves.shape[1]):
+        amplitude, kx, ky = waves[AMPLITUDE, i], waves[KX, i], waves[KY, i]
+        sigma, k = waves[SIGMA, i], waves[K, i]
         cosine, sine = turn(phase_at(waves, i, x, y, time))
         crest, slope = amplitude * cosine, amplitude * sine
-        k = math.sqrt(kx * kx + ky * ky)
-        wide, narrow, _ = fade(k, seabed(k, waves[i, DEPTH]), still)
+        wide, narrow, _ = fade(k, waves[BOTTOM, i], still)
         # of all the water that rises, nothing goes aside
         per_k = 1.0 / k if k > 0.0 else 0.0
         bx, by = kx * per_k, ky * per_k

@@ -67,11 +67,11 @@ def set_gradient(
 def _surface(waves, x, y, time):
     """Elevation over the still level at a place, its gradient, and its rate there."""
     eta = along = across = rise = 0.0
-    for w in range(waves.shape[0]):
+    for w in range(waves.shape[1]):
         angle = phase_at(waves, w, x, y, time)
-        eta += waves[w, AMPLITUDE] * math.cos(angle)
-        slope = waves[w, AMPLITUDE] * math.sin(angle)
-        along -= waves[w, KX] * slope
-        across -= waves[w, KY] * slope
-        rise += waves[w, OMEGA] * slope
+        eta += waves[AMPLITUDE, w] * math.cos(angle)
+        slope = waves[AMPLITUDE, w] * math.sin(angle)
+        along -= waves[KX, w] * slope
+        across -= waves[KY, w] * slope
+        rise += waves[OMEGA, w] * slope
     return eta, along, across, rise

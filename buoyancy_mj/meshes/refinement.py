@@ -6,18 +6,15 @@ from numpy.typing import NDArray
 from buoyancy_mj.meshes.surface import Surface
 
 SLENDER = 0.7
-"""Shortest side, over the edge wished for, up to which a long triangle is cut into slices.
-
-Slices are no deeper than this either: across right angles their diagonals are sqrt(2) 0.7 = 0.99.
-"""
+"""Shortest side, over the longest edge wished for, up to which a long triangle is cut in slices."""
 
 
 def refine(vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float) -> Surface:
     """Cut a surface into about as few triangles as edges of about `edge` [m] at most take.
 
-    Well-shaped triangles are halved across their longest edge. Slender ones are cut across their
-    two long edges at once, where a diagonal may reach 1.4 `edge`. Neighbours may be cut at
-    different places along their common edge.
+    Edges are halved until they are short enough, so that neighbours have the same ones. Well-shaped
+    triangles are halved across their longest edge. Slender ones are cut in slices at once; their
+    diagonals may be a quarter longer than `edge`.
 
     Args:
         vertices: corners (n, 3) [m].
@@ -27,6 +24,8 @@ def refine(vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float)
     Returns:
         Vertices and faces; the very arrays that came in if every edge is short enough.
     """
+    # an edge of just so many times the length is not too long by its rounding
+    edge *= 1.0 + 1e-9
     v, f, done = vertices, faces, []
     while len(f):
         # turn each face so that its longest edge runs from corner 0 to corner 1
@@ -38,10 +37,8 @@ def refine(vertices: NDArray[np.float64], faces: NDArray[np.int64], edge: float)
         done.append(f[~long])
 
         # slice the slender ones
-        counts = np.ceil(longest[slender] / (SLENDER * edge)).astype(np.int64)
-        for count in np.unique(counts):
-            v, slices = _slice(v, f[slender][counts == count], int(count))
-            done.append(slices)
+        v, slices = _slice_all(v, f[slender], edge)
+        done += slices
 
         # halve the others
         f = f[long & ~slender]
@@ -69,23 +66,40 @@ def _turn(f: NDArray[np.int64], first: NDArray[np.intp]) -> NDArray[np.int64]:
     return np.take_along_axis(f, (first[:, None] + np.arange(3)) % 3, axis=1)
 
 
-def _slice(v: NDArray[np.float64], f: NDArray[np.int64], count: int) -> Surface:
-    """Cut triangles into `count` slices parallel to their shortest edge."""
-    # the tip lies opposite the shortest edge
+def _slice_all(
+    v: NDArray[np.float64], f: NDArray[np.int64], edge: float
+) -> tuple[NDArray[np.float64], list[NDArray[np.int64]]]:
+    """Cut slender triangles in slices; returns all vertices, and lists of the new faces."""
+    # the tip lies opposite the shortest edge, and each side from there is halved so many times
     f = _turn(f, np.roll(_edge_lengths(v, f), -1, axis=1).argmin(axis=1))
-    tip, left, right = v[f.T]
+    sides = _edge_lengths(v, f)[:, [0, 2]]
+    parts = 2 ** np.ceil(np.log2(np.maximum(sides / edge, 1.0))).astype(np.int64)
+    slices = []
+    for left, right in np.unique(parts, axis=0):
+        v, faces = _slice(v, f[(parts == (left, right)).all(axis=1)], int(left), int(right))
+        slices.append(faces)
+    return v, slices
 
-    # rungs of a ladder between the two long sides
-    part = np.arange(1, count)[:, None, None] / count
-    rungs = np.concatenate([tip + part * (left - tip), tip + part * (right - tip)]).reshape(-1, 3)
 
-    # indices (count, n) down the left and the right side, ending at the corners themselves
-    new = len(v) + np.arange(2 * (count - 1) * len(f)).reshape(2, count - 1, len(f))
-    lefts = np.vstack([new[0], f[None, :, 1]])
-    rights = np.vstack([new[1], f[None, :, 2]])
+def _slice(v: NDArray[np.float64], f: NDArray[np.int64], left: int, right: int) -> Surface:
+    """Cut triangles whose sides from corner 0 are divided in so many parts."""
+    rails = []
+    for corner, count in ((1, left), (2, right)):
+        # down each side, from the tip to the corner itself
+        part = np.arange(1, count)[:, None, None] / count
+        rail = len(v) + np.arange((count - 1) * len(f)).reshape(count - 1, len(f))
+        tip, end = v[f[:, 0]], v[f[:, corner]]
+        v = np.vstack([v, ((1.0 - part) * tip + part * end).reshape(-1, 3)])
+        rails.append(np.vstack([f[None, :, 0], rail, f[None, :, corner]]))
 
-    # a triangle at the tip, two between each pair of rungs
-    tips = np.column_stack([f[:, 0], lefts[0], rights[0]])
-    upper = np.stack([lefts[:-1], lefts[1:], rights[1:]], axis=-1).reshape(-1, 3)
-    lower = np.stack([lefts[:-1], rights[1:], rights[:-1]], axis=-1).reshape(-1, 3)
-    return np.vstack([v, rungs]), np.vstack([tips, upper, lower])
+    # from the tip, and from each rung to the next, on the side where that is nearer
+    lefts, rights = rails
+    i, j, steps = 1, 1, [(lefts[1], rights[1], lefts[0])]
+    while i < left or j < right:
+        if (i + 1) * right <= (j + 1) * left:
+            steps.append((lefts[i], lefts[i + 1], rights[j]))
+            i += 1
+        else:
+            steps.append((lefts[i], rights[j + 1], rights[j]))
+            j += 1
+    return v, np.array(steps).transpose(0, 2, 1).reshape(-1, 3)

@@ -46,7 +46,7 @@ def gather_corners(vehicle: Vehicle, water: Water) -> Corners:
         spans=np.array(spans),
         boxes=np.array(boxes),
         root=vehicle.root,
-        waves=water.rows,
+        waves=water.table,
         level=water.level,
         curvature=float(np.abs(amplitude) @ (kx * kx + ky * ky)),
     )

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import WaterError, describe
 from buoyancy_mj.kernels import many_places as kernels
+from buoyancy_mj.kernels.waves import tabulate
 from buoyancy_mj.sea.currents import (
     Current,
     CurrentProfile,
@@ -96,6 +97,11 @@ class Water:
         return _read_only(self._rows)
 
     @functools.cached_property
+    def table(self) -> NDArray[np.float64]:
+        """The waves as kernels read them (9, n), read-only; see `kernels.waves`."""
+        return _read_only(self._table)
+
+    @functools.cached_property
     def current_rows(self) -> NDArray[np.float64]:
         """The current as rows (n, 5), see `kernels.currents`; read-only."""
         return _read_only(self._current_rows)
@@ -105,6 +111,10 @@ class Water:
     @functools.cached_property
     def _rows(self) -> NDArray[np.float64]:
         return join_equal(self._all_rows)
+
+    @functools.cached_property
+    def _table(self) -> NDArray[np.float64]:
+        return tabulate(self._rows)
 
     @functools.cached_property
     def _all_rows(self) -> NDArray[np.float64]:
@@ -188,9 +198,9 @@ class Water:
         spots = read_spots(x, y, time)
         out = np.empty(spots.x.size)
         if len(spots.times) == 1:
-            kernels.elevations(self._rows, spots.x, spots.y, spots.times[0], out)
+            kernels.elevations(self._table, spots.x, spots.y, spots.times[0], out)
         else:
-            kernels.elevations_at(self._rows, *spots[1:], out)
+            kernels.elevations_at(self._table, *spots[1:], out)
         return _unwrap(self.level + out.reshape(spots.shape))
 
     def slope(self, x: ArrayLike, y: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
@@ -204,7 +214,7 @@ class Water:
         """
         spots = read_spots(x, y, time)
         out = np.empty((spots.x.size, 2))
-        kernels.slopes(self._rows, *spots[1:], out)
+        kernels.slopes(self._table, *spots[1:], out)
         return out.reshape(*spots.shape, 2)
 
     def depth(self, points: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
@@ -226,7 +236,7 @@ class Water:
         """
         shape, places, times = read_places(points, time)
         out = np.empty((len(places), 3))
-        kernels.velocities(self._rows, self._current_rows, places, self.level, times, out)
+        kernels.velocities(self._table, self._current_rows, places, self.level, times, out)
         return out.reshape(*shape, 3)
 
     def acceleration(self, points: ArrayLike, time: ArrayLike) -> NDArray[np.float64]:
@@ -238,7 +248,7 @@ class Water:
         """
         shape, places, times = read_places(points, time)
         out = np.empty((len(places), 3))
-        kernels.accelerations(self._rows, self._current_rows, places, self.level, times, out)
+        kernels.accelerations(self._table, self._current_rows, places, self.level, times, out)
         return out.reshape(*shape, 3)
 
     def pressure(
@@ -258,7 +268,7 @@ class Water:
         """
         shape, places, times = read_places(points, time)
         out = np.empty(len(places))
-        kernels.heads(self._rows, places, self.level, times, out)
+        kernels.heads(self._table, places, self.level, times, out)
         return _unwrap(self.density * gravity * out.reshape(shape))
 
 

@@ -114,7 +114,7 @@ class PackedConvexHulls:
         self.hulls = hulls
         self.water = water
         # kernels are compiled for arrays that can be written to
-        self._waves = water.rows.copy()
+        self._waves = water.table.copy()
         self.volumes = hulls.volumes
         """Volume that each hull displaces when it is under water (h,) [m^3]."""
         self.results = np.zeros((len(hulls.meshes), clip.COLUMNS))

@@ -85,15 +85,13 @@ class PackedHulls:
             WaterError: waves that are too short for so long a hull, or too many.
         """
         meshes, fills = hulls.meshes, hulls.fills
-        self._sea = sea_arrays(water)
-        check_waves(max(0.5 * float(np.linalg.norm(m.extents)) for m in meshes), self._sea.waves)
+        self._sea, waves = sea_arrays(water), water.rows
+        check_waves(max(0.5 * float(np.linalg.norm(m.extents)) for m in meshes), waves)
         edges, allowed = find_longest_edges(meshes, hulls.bodies, water, tolerance)
         self._meshes = list(zip(meshes, edges, strict=True))
         self._fills = fills
         trees = [_tree(*each) for each in self._meshes]
-        self.hulls: Hulls = conform(
-            _hulls(meshes, trees, fills, hulls.frames, self._sea.waves, allowed)
-        )
+        self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, waves, allowed))
         """The hulls as kernels read them."""
         spans = self.hulls.spans
         leaves = spans[spans[:, tree.BEHIND] == np.arange(len(spans)) + 1]
@@ -116,7 +114,7 @@ class PackedHulls:
 
     def new_scratches(self, count: int) -> list[Scratch]:
         """Arrays for kernels to work in, for so many threads."""
-        return new_scratches(count, self._most, len(self._sea.waves))
+        return new_scratches(count, self._most, self._sea.waves.shape[1])
 
     @property
     def counts(self) -> Mapping[str, int]:
@@ -189,7 +187,7 @@ class PackedHulls:
 def sea_arrays(water: Water, pressure_model: PressureModel = PressureModel.archimedes) -> Sea:
     """A sea as kernels read it."""
     return conform(
-        Sea(water.rows, water.current_rows, water.density, water.level, int(pressure_model))
+        Sea(water.table, water.current_rows, water.density, water.level, int(pressure_model))
     )
 
 

@@ -188,7 +188,7 @@ def _submerge(count, state, water, model, datas, levels, layout, waves):
     own, scratch = table.loads.hulls, view(table.pool[0], Workplace).scratch
     hulls = Hulls(
         own.vertices, own.faces, own.areas, own.sizes, own.nodes, own.spans, own.boxes,
-        own.moments, own.edges, own.whole, own.typical, Tiles(layout, waves), own.blocks,
+        own.moments, own.rules, own.edges, own.whole, own.typical, Tiles(layout, waves), own.blocks,
         own.frames,
     )  # fmt: skip
     wet = view(table.records[STATES + state], Record).wet

@@ -7,7 +7,7 @@ from buoyancy_mj.kernels.arrays import Doubles, Int32s
 from buoyancy_mj.kernels.compiling import inner, njit
 from buoyancy_mj.kernels.vectors import triple
 from buoyancy_mj.kernels.vehicle.motion import find_depth
-from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY, tangent
+from buoyancy_mj.kernels.waves import AMPLITUDE, K, tangent
 
 MOST_STEPS = 200
 NEAR, NEWTON_STEPS = 1e-3, 4
@@ -72,9 +72,8 @@ def find_surface(sea, at, way, time, farthest):
     together, so that none is passed; Newton's steps end it.
     """
     steepness = 0.0
-    for w in range(sea.waves.shape[0]):
-        k = math.hypot(sea.waves[w, KX], sea.waves[w, KY])
-        steepness += abs(sea.waves[w, AMPLITUDE]) * k
+    for w in range(sea.waves.shape[1]):
+        steepness += abs(sea.waves[AMPLITUDE, w]) * sea.waves[K, w]
     fastest = abs(way[2]) + steepness * math.hypot(way[0], way[1])
     if not fastest > 0.0:
         return math.nan
