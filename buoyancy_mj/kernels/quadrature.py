@@ -16,7 +16,7 @@ from buoyancy_mj.kernels.vectors import between, distance, scale
 
 POINT = 0.1
 """Longest edge of a triangle, times the wave number, for one point: to POINT^2 / 36."""
-TINY = 0.3
+TINY = 0.2
 """Longest edge of a triangle, times the wave number, for three points: to TINY^3 / 200."""
 PIECE = 1.5
 """Longest edge of a piece of a triangle, times the wave number."""
