@@ -323,7 +323,11 @@ app(sys.argv[1:])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize(
+    "number",
+    # that SIGTERM ends a sweep is tested without a process too, above
+    [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long)],
+)
 def test_a_sweep_stops_while_it_steps(tmp_path, number):
     # stepping alone would take minutes
     arguments = ["sweep", STILL, "--over", "mass=9:10:64", "--duration", "100000"]
@@ -376,7 +380,8 @@ def executed(folder):
         pytest.param(["list"], marks=pytest.mark.slow),
         pytest.param(
             ["run", "hourglass_drop_still", "--duration", "0.05", "--record", "x.rrd"],
-            marks=pytest.mark.slow,
+            # the next test runs it too
+            marks=pytest.mark.long,
         ),
         pytest.param(
             ["inspect", "hourglass", "--record", "x.rrd", "--plot", "."], marks=pytest.mark.slow
