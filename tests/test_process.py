@@ -456,7 +456,7 @@ def test_without_a_folder_for_compiled_kernels_they_lie_among_temporary_files(tm
         "HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary"),
         "PYTHONPATH": str(copy.parent), "PYTHONDONTWRITEBYTECODE": "1",
     }  # fmt: skip
-    code = "import buoyancy_mj as b; b.Water().elevation([[0.0, 0.0]], 0.0); print(b.__file__)"
+    code = "import buoyancy_mj as b; b.Water().elevation(0.0, 0.0, 0.0); print(b.__file__)"
     done = run_python("-P", "-c", code, env=environment)
     assert done.stdout == f"{copy / '__init__.py'}\n", done.stderr
     kept = tmp_path / "temporary" / f"buoyancy_mj-{os.getuid()}"
