@@ -23,13 +23,16 @@ class Floating:
         self.vectors = 0.5 * np.cross(b - a, c - a)
         self.volume = volume
 
-    def energies(self, ups):
-        """Height of G over B (n,) [m], with the directions (n, 3) upright."""
+    def energies(self, ups, halvings=26):
+        """Height of G over B (n,) [m], with the directions (n, 3) upright.
+
+        Its error goes with the square of that of the level, for there the moment is greatest.
+        """
         heights = np.einsum("fvi,ni->vnf", self.corners, ups)
         lids = -self.vectors @ ups.T
         low, high = heights.min(axis=(0, 2)), heights.max(axis=(0, 2))
         # halve the interval, then straight on by the slope over what is left of it
-        for _ in range(26):
+        for _ in range(halvings):
             middle = 0.5 * (low + high)
             deep = np.einsum("nf,fn->n", ramp(middle[:, None] - heights), lids) > self.volume
             low, high = np.where(deep, low, middle), np.where(deep, middle, high)
@@ -40,7 +43,8 @@ class Floating:
     def lows(self, count=4000):
         """Directions (n, 3) with less energy than all round, from so many directions."""
         ups = spiral(count)
-        energies = np.concatenate([self.energies(part) for part in np.array_split(ups, 16)])
+        # to 1e-8 of the height
+        energies = np.concatenate([self.energies(part, 13) for part in np.array_split(ups, 16)])
         _, near = cKDTree(ups).query(ups, 9)
         found = []
         for up in ups[energies <= energies[near].min(axis=1)]:

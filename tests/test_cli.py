@@ -14,7 +14,7 @@ import typer
 from typer.testing import CliRunner
 
 import buoyancy_mj
-from buoyancy_mj import cli
+from buoyancy_mj import Simulation, cli
 from buoyancy_mj.cli import app
 from buoyancy_mj.cli.group import MODULES
 from buoyancy_mj.scenes import catalog
@@ -241,9 +241,26 @@ def test_brackets_and_pictures_in_names_are_only_text(run, tmp_path):
     assert "a[red]b.rrd" in result.stdout
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
+def test_a_signal_while_a_run_is_recorded_keeps_the_recording(run, tmp_path, monkeypatch, sent):
+    advance = Simulation.advance
+
+    def interrupted(self, count):
+        advance(self, count)
+        if self.data.time > 0.1:
+            signal.raise_signal(sent)
+
+    monkeypatch.setattr(Simulation, "advance", interrupted)
+    result = run("run", "hourglass_drop_still", "--record", "out.rrd")
+    assert result.exit_code == 128 + sent
+    assert re.fullmatch(r"the recording up to 0\.1\d* s is in 'out\.rrd'\n", result.stderr)
+    assert [path.name for path in tmp_path.iterdir()] == ["out.rrd"]
+    # its footer, which comes last
+    assert b"FOOT" in (tmp_path / "out.rrd").read_bytes()[-32:]
+
+
+@pytest.mark.slow
+def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path):
     command = [
         sys.executable,
         "-m",
@@ -265,9 +282,9 @@ def test_ctrl_c_keeps_the_recording_and_says_where(tmp_path, sent):
     while not (partial.exists() and partial.stat().st_size > 2_000_000):
         assert time.monotonic() < deadline
         time.sleep(0.1)
-    os.kill(process.pid, sent)
+    os.kill(process.pid, signal.SIGINT)
     _, told = process.communicate(timeout=120)
-    assert process.returncode == 128 + sent
+    assert process.returncode == 128 + signal.SIGINT
     assert re.search(r"the recording up to .* s is in 'out.rrd'", told), told
     assert "Traceback" not in told
     verify = [sys.executable, "-m", "rerun_cli", "rrd", "verify", str(tmp_path / "out.rrd")]

@@ -15,7 +15,7 @@ import pytest
 import trimesh
 
 from buoyancy_mj import SweepError
-from buoyancy_mj.scenes import catalog, cluster, places
+from buoyancy_mj.scenes import catalog, cluster, places, worker
 from buoyancy_mj.scenes.bundle import describe_software, pack, unpack
 from buoyancy_mj.scenes.cluster import chunk_size
 from buoyancy_mj.scenes.scene_files import list_scene_files
@@ -164,6 +164,19 @@ def test_what_ships_is_not_in_a_bundle_and_must_be_the_same():
     with pytest.raises(SweepError, match=r"has buoyancy_mj .*, and the sweep was started with new"):
         unpack(packed._replace(software="new"))
     assert describe_software().startswith("buoyancy_mj ")
+
+
+def test_a_machine_compiles_for_a_scene_once_for_each_software(tmp_path, monkeypatch):
+    here = vary(catalog.scenes()["auv_waves"], (), ("mass",), [(20.0,)], trust=False)
+    built = []
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    monkeypatch.setattr(worker, "Simulation", lambda *_, **__: built.append(1))
+    for software, count in (("old", 1), ("old", 1), ("new", 2), ("new", 2)):
+        # as in a process that has just started
+        monkeypatch.setattr(worker, "_compiled", set())
+        monkeypatch.setattr(worker, "describe_software", lambda software=software: software)
+        worker._compile_in_turn(here, (20.0,))
+        assert len(built) == count
 
 
 # places -------------------------------------------------------------------------------------------

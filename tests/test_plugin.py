@@ -554,7 +554,8 @@ def test_records_of_freed_data_serve_again_and_those_in_use_stay():
     )
 
 
-def test_waters_that_no_data_use_are_forgotten_in_the_end():
+def test_waters_that_no_data_use_are_forgotten_in_the_end(monkeypatch):
+    monkeypatch.setattr(waters, "MOST_UNUSED", 4)
     for i in range(waters.MOST_UNUSED + 10):
         with_water(Water(density=1.0 + i))
     gc.collect()

@@ -323,7 +323,11 @@ app(sys.argv[1:])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize(
+    "number",
+    # that SIGTERM ends a sweep is tested without a process too, above
+    [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.long)],
+)
 def test_a_sweep_stops_while_it_steps(tmp_path, number):
     # stepping alone would take minutes
     arguments = ["sweep", STILL, "--over", "mass=9:10:64", "--duration", "100000"]
@@ -376,7 +380,8 @@ def executed(folder):
         pytest.param(["list"], marks=pytest.mark.slow),
         pytest.param(
             ["run", "hourglass_drop_still", "--duration", "0.05", "--record", "x.rrd"],
-            marks=pytest.mark.slow,
+            # the next test runs it too
+            marks=pytest.mark.long,
         ),
         pytest.param(
             ["inspect", "hourglass", "--record", "x.rrd", "--plot", "."], marks=pytest.mark.slow
@@ -451,7 +456,7 @@ def test_without_a_folder_for_compiled_kernels_they_lie_among_temporary_files(tm
         "HOME": str(tmp_path / "home"), "TMPDIR": str(tmp_path / "temporary"),
         "PYTHONPATH": str(copy.parent), "PYTHONDONTWRITEBYTECODE": "1",
     }  # fmt: skip
-    code = "import buoyancy_mj as b; b.Water().elevation([[0.0, 0.0]], 0.0); print(b.__file__)"
+    code = "import buoyancy_mj as b; b.Water().elevation(0.0, 0.0, 0.0); print(b.__file__)"
     done = run_python("-P", "-c", code, env=environment)
     assert done.stdout == f"{copy / '__init__.py'}\n", done.stderr
     kept = tmp_path / "temporary" / f"buoyancy_mj-{os.getuid()}"

@@ -26,7 +26,7 @@ SOURCES = (
     "meshes/*.py",
 )
 """The code that finds it, as patterns of files of this package."""
-LIBRARIES = ("manifold3d", "trimesh")
+LIBRARIES = ("manifold3d", "scipy", "trimesh")
 """Libraries whose numbers are in it, besides those that are asked themselves."""
 
 

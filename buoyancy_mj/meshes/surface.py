@@ -2,10 +2,10 @@
 
 import manifold3d
 import numpy as np
-import scipy
 from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.errors import MeshError
+from buoyancy_mj.meshes.components import label_components
 
 Surface = tuple[NDArray[np.float64], NDArray[np.int64]]
 """Vertices (n, 3) [m], and faces (m, 3) as indices into them."""
@@ -84,11 +84,8 @@ def compact(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Surface:
 
 def find_pieces(faces: NDArray[np.int64]) -> list[NDArray[np.intp]]:
     """Vertices of each connected piece of a surface, the piece of the first vertex first."""
-    count = int(faces.max()) + 1
-    ends = faces.ravel(), np.roll(faces, 1, axis=1).ravel()
-    graph = scipy.sparse.csr_array((np.ones(faces.size), ends), shape=(count, count))
-    pieces, labels = scipy.sparse.csgraph.connected_components(graph, directed=False)
-    return [np.flatnonzero(labels == piece) for piece in range(pieces)]
+    labels = label_components(directed_edges(faces), int(faces.max()) + 1)
+    return [np.flatnonzero(labels == piece) for piece in range(int(labels.max()) + 1)]
 
 
 def tetrahedra(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:

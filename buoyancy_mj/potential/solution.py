@@ -92,7 +92,8 @@ def _build_panels(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Pa
     normals = doubled / (2.0 * areas[:, None])
     centres = corners.mean(axis=1)
     return Panels(
-        faces=faces,
+        # those of a mesh are read-only, and kernels would be compiled again for such an array
+        faces=faces.copy(),
         corners=corners,
         normals=normals,
         tangents=tangents,

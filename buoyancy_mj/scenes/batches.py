@@ -10,7 +10,7 @@ from mujoco import batch
 from buoyancy_mj.engine.c_functions import find_cause, raise_causes
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.errors import BuoyancyError, ControlError, DivergenceError
-from buoyancy_mj.scenes.divergence import QUANTITIES, describe_divergence
+from buoyancy_mj.scenes.divergence import BAD_VALUES, describe_divergence
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.trajectory import Trajectory
 
@@ -23,7 +23,6 @@ BLOCK_TIME = 0.25
 PATIENCE = 3.0
 """How many times longer than its first step a batch may step at least: in each block the engine
 asks for the devices of all its simulations anew, which may take as long as many steps."""
-_BAD_VALUES = [int(warning) for warning in QUANTITIES]
 _STATE = ("qpos", "qvel", "act", "ctrl", "mocap_pos", "mocap_quat")
 _SIZES = ("nq", "nv", "na", "nu", "nbody", "ngeom", "nsite", "nsensordata", "nmocap")
 
@@ -135,7 +134,7 @@ class _Stepping:
 
         # bad values end one
         for i in numbers:
-            if i not in self.failures and self._batch.warning[i, _BAD_VALUES, 1].any():
+            if i not in self.failures and self._batch.warning[i, BAD_VALUES, 1].any():
                 scene = self._simulations[i].scene
                 self.failures[i] = describe_divergence(scene, float(self._time[i]))
 

@@ -143,6 +143,7 @@ class Cluster:
 
     def _connect(self) -> None:
         """Join a cluster, or start one."""
+        errors = self.ray.exceptions
         handlers = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
         options: dict[str, Any] = {"log_to_driver": False, "logging_level": logging.ERROR}
         try:
@@ -151,18 +152,9 @@ class Cluster:
             folder = Path.cwd().anchor if is_safe else Path.cwd()
             with contextlib.chdir(folder):
                 self.ray.init(self._address, **options)
-        except (
-            OSError,
-            RuntimeError,
-            ValueError,
-            ImportError,
-            self.ray.exceptions.RayError,
-        ) as error:
-            where = (
-                "Ray cannot be started"
-                if self._address is None
-                else (f"there is no Ray at {self._address}")
-            )
+        except (OSError, RuntimeError, ValueError, ImportError, errors.RayError) as error:
+            alone = self._address is None
+            where = "Ray cannot be started" if alone else f"there is no Ray at {self._address}"
             raise SweepError(f"{where}: {_one_line(error)}") from error
         finally:
             # Ray takes SIGTERM for itself

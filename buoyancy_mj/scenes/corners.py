@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.kernels.drafts import (
@@ -83,8 +83,8 @@ def _convex_corners(hulls: Sequence[Hull], body: int) -> NDArray[np.float64]:
     corners = []
     for vertices in (hull.mesh_in_body.vertices for hull in hulls if hull.body == body):
         try:
-            corners.append(vertices[ConvexHull(vertices).vertices])
-        except QhullError:
+            corners.append(vertices[scipy.spatial.ConvexHull(vertices).vertices])
+        except scipy.spatial.QhullError:
             # so thin that it has no convex hull
             corners.append(vertices)
     return np.vstack(corners)

@@ -23,7 +23,8 @@ QUANTITIES = {
     mujoco.mjtWarning.mjWARN_BADQACC: "acceleration",
 }
 """The quantity that is bad, by the warning that MuJoCo counts."""
-_BAD_VALUES = [int(warning) for warning in QUANTITIES]
+BAD_VALUES = [int(warning) for warning in QUANTITIES]
+"""The indices of these warnings in `data.warning`."""
 
 
 class Limits:
@@ -131,7 +132,7 @@ def check_finite(scene: Scene, model: mujoco.MjModel, data: mujoco.MjData) -> No
     Raises:
         DivergenceError: it has; the error names the body and the quantity.
     """
-    if not data.warning.number[_BAD_VALUES].any():
+    if not data.warning.number[BAD_VALUES].any():
         return
     for warning, quantity in QUANTITIES.items():
         counter = data.warning[warning]

@@ -11,7 +11,7 @@ from buoyancy_mj.engine import layout
 from buoyancy_mj.engine.compiled import require_known_layout
 from buoyancy_mj.kernels.entries import steps
 from buoyancy_mj.kernels.entries.views import Table
-from buoyancy_mj.scenes.divergence import QUANTITIES, Limits
+from buoyancy_mj.scenes.divergence import BAD_VALUES, Limits
 from buoyancy_mj.scenes.monitor import Monitor
 
 
@@ -38,7 +38,7 @@ class Lookout:
                 xipos=data.xipos,
                 cvel=data.cvel,
                 warnings=_view_warnings(data),
-                bad_values=np.array([int(warning) for warning in QUANTITIES]),
+                bad_values=np.array(BAD_VALUES),
                 bounds=limits.bounds,
                 watched=self._watched,
                 contact_count=data._address + layout.offset("mjData.ncon"),

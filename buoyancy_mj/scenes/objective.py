@@ -194,7 +194,9 @@ def objective(
 
     Example:
         >>> from scipy.optimize import differential_evolution
-        >>> drop = objective("hourglass_drop_still", ["mass=10:20"], "peak_draft")
+        >>> settings = ["duration=1"]
+        >>> over = ["mass=10:20"]
+        >>> drop = objective("hourglass_drop_still", over, "peak_draft", settings=settings)
         >>> best = differential_evolution(
         ...     drop, drop.bounds, vectorized=True, updating="deferred", seed=1
         ... )

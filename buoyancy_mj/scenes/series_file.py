@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import RecordingError
-from buoyancy_mj.files import GrowingFile, replace_file
+from buoyancy_mj.files import replace_file
+from buoyancy_mj.scenes.recording_file import RecordingFile
 
 ENDS = (".csv", ".parquet")
 """Ends of names that say what kind of table a file is."""
@@ -55,16 +56,7 @@ class SeriesFile:
     def __init__(self, path: Path, columns: Sequence[Column]) -> None:
         check_series_name(path)
         self._columns = columns
-        try:
-            self._file = GrowingFile(path, grows_as=".csv")
-        except BlockingIOError as error:
-            raise RecordingError(
-                f"another run is writing '{error.filename}'; choose another place for the series"
-            ) from error
-        except OSError as error:
-            raise RecordingError(
-                f"cannot write '{path}': {error.strerror}; choose another place for the series"
-            ) from error
+        self._file = RecordingFile(path, "for the series", grows_as=".csv")
         self._append(column.header for column in columns)
 
     @property
@@ -96,13 +88,13 @@ class SeriesFile:
         """
         self._file.close()
         path, partial = self._file.path, self._file.partial
+        if path.suffix == ".csv" or (path.exists() and not complete):
+            return self._file.take_name(complete=complete)
         try:
-            if path.suffix == ".csv" or (path.exists() and not complete):
-                return self._file.take_name(complete=complete)
             self._write_parquet()
         except OSError as error:
             raise RecordingError(
-                f"cannot write '{path}': {error.strerror}; the series is in '{partial}'"
+                f"cannot write '{path}': {error.strerror}; what was written is in '{partial}'"
             ) from error
         partial.unlink(missing_ok=True)
         return path
@@ -121,7 +113,7 @@ class SeriesFile:
             self._file.close()
             left = self._file.partial
             if self._file.path.suffix == ".csv":
-                with contextlib.suppress(OSError):
+                with contextlib.suppress(RecordingError):
                     left = self._file.take_name(complete=False)
             raise RecordingError(
                 f"the series broke off: {error.strerror}; what was written is in '{left}'"

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from buoyancy_mj.errors import BuoyancyError, BuoyancyWarning
-from buoyancy_mj.scenes.bundle import Bundle, unpack
+from buoyancy_mj.scenes.bundle import Bundle, describe_software, unpack
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.variations import Values, Variations
 
@@ -69,7 +69,8 @@ def _compile_in_turn(variations: Variations, values: Values) -> None:
     """Let one process of this machine compile what a scene needs, while the others wait.
 
     A fresh installation compiles for a minute, and on a machine of 64 cores 64 processes would do
-    so at once. A file among the temporary ones remembers the scenes that were built here.
+    so at once. A file among the temporary ones remembers the scenes that were built here, and with
+    which software.
     """
     if variations.digest in _compiled:
         return
@@ -86,8 +87,9 @@ def _compile_in_turn(variations: Variations, values: Values) -> None:
     with os.fdopen(descriptor, "r+", encoding="utf-8") as file:
         with contextlib.suppress(OSError):
             fcntl.flock(file, fcntl.LOCK_EX)
-        if variations.digest in file.read().splitlines():
+        line = f"{variations.digest}, {describe_software()}"
+        if line in file.read().splitlines():
             return
         with contextlib.suppress(BuoyancyError):
             Simulation(variations.read_scene(values), trust=variations.trust)
-        file.write(f"{variations.digest}\n")
+        file.write(f"{line}\n")

@@ -20,7 +20,7 @@ from pathlib import Path
 import rerun as rr
 
 from buoyancy_mj.errors import RecordingError
-from buoyancy_mj.files import GrowingFile
+from buoyancy_mj.scenes.recording_file import RecordingFile
 
 _HEADER_SIZE = 12
 _MESSAGE = struct.Struct("<QQ")
@@ -44,16 +44,7 @@ class RrdFile:
     """
 
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
-        try:
-            self._file = GrowingFile(path)
-        except BlockingIOError as error:
-            raise RecordingError(
-                f"another run is writing '{error.filename}'; choose another place (--record)"
-            ) from error
-        except OSError as error:
-            raise RecordingError(
-                f"cannot write '{path}': {error.strerror}; choose another place (--record)"
-            ) from error
+        self._file = RecordingFile(path, "(--record)")
         self._stream = stream.binary_stream()
 
     @property
@@ -96,22 +87,12 @@ class RrdFile:
             _add_footer(self._file.partial)
         finally:
             # also when a second Ctrl-C finds that a footer takes too long
-            left = self._take_name(complete=complete)
+            left = self._file.take_name(complete=complete)
         return left
 
     def discard(self) -> None:
         """Remove the file of a recording that never began."""
         self._file.discard()
-
-    def _take_name(self, *, complete: bool) -> Path:
-        """Give the file its name, but for an incomplete one in whose place another is."""
-        try:
-            return self._file.take_name(complete=complete)
-        except OSError as error:
-            raise RecordingError(
-                f"cannot write '{self._file.path}': {error.strerror}; "
-                f"the recording is in '{self._file.partial}'"
-            ) from error
 
 
 def _split(chunk: bytes, *, with_header: bool) -> Iterator[memoryview]:

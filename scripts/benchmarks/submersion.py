@@ -1,9 +1,11 @@
 """One submersion by the public call, against other packages on the same meshes and poses."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
 from rich.table import Table
 
 from benchmarks.peers import CALLS, PEERS, Poses, capytaine
@@ -86,8 +88,17 @@ def _measure_solid(solid: trimesh.Trimesh, quick: bool) -> Times:
 def _bytes(mesh: TriMesh) -> int:
     """Memory of a mesh, of what is packed of it, and of where it is cut."""
     packed = exact.PackedHulls(HullSet([mesh]), Water())
-    arrays = [*packed.hulls, *packed.scratch.cut, packed.results, mesh.vertices, mesh.faces]
-    return sum(values.nbytes for values in arrays)
+    parts = packed.hulls, packed.scratch.cut, packed.results, mesh.vertices, mesh.faces
+    return sum(values.nbytes for values in _list_arrays(parts))
+
+
+def _list_arrays(parts: tuple[Any, ...]) -> Iterator[NDArray[Any]]:
+    """The arrays of tuples in tuples."""
+    for part in parts:
+        if isinstance(part, tuple):
+            yield from _list_arrays(part)
+        elif isinstance(part, np.ndarray):
+            yield part
 
 
 def exponent(rows: list[Times], column: str) -> float:

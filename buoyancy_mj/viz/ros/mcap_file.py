@@ -8,24 +8,16 @@ from typing import Any
 import foxglove
 from foxglove.mcap import MCAPCompression, MCAPWriteOptions
 
-from buoyancy_mj.errors import BuoyancyWarning, RecordingError
+from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.files import GrowingFile
+from buoyancy_mj.scenes.recording_file import RecordingFile
 
 
 class McapFile:
     """An MCAP file that grows, and the writer that fills it."""
 
     def __init__(self, path: Path, context: foxglove.Context) -> None:
-        try:
-            self._file = GrowingFile(path)
-        except BlockingIOError as error:
-            raise RecordingError(
-                f"another run is writing '{error.filename}'; choose another place (--mcap)"
-            ) from error
-        except OSError as error:
-            raise RecordingError(
-                f"cannot write '{path}': {error.strerror}; choose another place (--mcap)"
-            ) from error
+        self._file = RecordingFile(path, "(--mcap)")
         self._pipe = _Pipe(self._file)
         options = MCAPWriteOptions(
             compression=MCAPCompression.Zstd,
@@ -50,13 +42,7 @@ class McapFile:
     def take_name(self, *, complete: bool) -> Path:
         """Close the file and give it its name."""
         self._file.close()
-        try:
-            return self._file.take_name(complete=complete)
-        except OSError as error:
-            raise RecordingError(
-                f"cannot write '{self._file.path}': {error.strerror}; it is in "
-                f"'{self._file.partial}'"
-            ) from error
+        return self._file.take_name(complete=complete)
 
     def discard(self) -> None:
         """Remove the file of a run that never began."""
