@@ -63,11 +63,11 @@ def submerge(
         >>> submerge(shapes.sphere(0.5), position=(0.0, 0.0, 0.0)).volume
         0.2617...
     """
-    # the pose
+    # the pose, of arrays of its own: kernels would be compiled again for read-only ones
     origin = read_array(MeshError, "position", position, (3,))
     turn = np.eye(3) if rotation is None else _read_rotation(rotation)
     instant = read_number(MeshError, "time", time)
-    pose = np.ascontiguousarray(origin)[None], turn.reshape(1, 9), instant
+    pose = origin.reshape(1, 3).copy(), turn.reshape(1, 9).copy(), instant
 
     # the submersion; other methods may carry something from step to step, so they are packed anew
     sea = water or _STILL
