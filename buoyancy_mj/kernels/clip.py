@@ -25,10 +25,10 @@ there x, y and d say all of a corner, since z is the height of the plane less d.
 
 import math
 
-from numba import uint64
+from numba import int64, uint64
 
 from buoyancy_mj.kernels import swell, tree
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inlined, njit
 from buoyancy_mj.kernels.cuts import MOST, add, nothing, subtract, sum_cuts
 from buoyancy_mj.kernels.halving import split
 from buoyancy_mj.kernels.hulls import (
@@ -105,14 +105,14 @@ def submerge_hulls(
             _set_wet(out, h, wholes, origin, r, wet)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _set_dry(out, h):
     """Write the results of a hull that is not in the water."""
     out[h, VOLUME] = out[h, WETTED_AREA] = out[h, WATERPLANE_AREA] = 0.0
     out[h, CX] = out[h, CY] = out[h, CZ] = out[h, WATERPLANE_X] = out[h, WATERPLANE_Y] = math.nan
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _set_whole(out, h, wholes, origin, r, area):
     """Write the results of a hull whose whole volume is under water."""
     out[h, VOLUME], out[h, WETTED_AREA] = wholes[h, WHOLE_VOLUME], area
@@ -165,7 +165,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     most, others, crossed = scratch.sorted[0], scratch.sorted[1], scratch.sorted[2]
     bent, stack, allowed = scratch.sorted[3], scratch.stack, hulls.whole[h, ALLOWED]
     edges, most_bent = hulls.edges, 0.125 * curvature if wavy else 0.0
-    cuts, waiting = scratch.cuts, 0
+    # int64: a literal 0 would have all that it is given to compiled twice
+    cuts, waiting, none = scratch.cuts, int64(0), int64(0)
 
     # integrals over wet nodes, over triangles, and of e over the waterplane
     total, sums, extra = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), nothing(), (0.0, 0.0, 0.0, 0.0)
@@ -190,7 +191,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
             if wavy:
                 for n in range(count):
                     w[n] = d[n]
-                swell.add_rest(x, y, count, rest, tiles, store, near, w)
+                swell.add_rest(x, y, int64(count), rest, tiles, store, near, w)
             first, behind = faces_of(spans, i)
             if most_bent * edges[i] * edges[i] > allowed:
                 many, few, cut, halved = sort_bent_faces(
@@ -225,12 +226,12 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                         store,
                         near,
                     )
-                    waiting = 0
+                    waiting = none
 
             # those that are to be halved, until what is left of them is wet, dry or cut
             for n in range(halved):
                 set_triangle(stack, bent[n], faces, base, x, y, d, w)
-                size, top = sizes[bent[n]], 0
+                size, top = sizes[bent[n]], none
                 while top >= 0:
                     more = split(
                         stack, top, curvature, allowed, (tiles, store),
@@ -250,7 +251,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                                 cuts, waiting, sums, extra, wavy, plane, rest,
                                 tiles, store, near,
                             )  # fmt: skip
-                            waiting = 0
+                            waiting = none
                     top -= 1
         if mostly:
             part = _moments_of_node(node_moments[i], middle, r, under, plane.gradient)
@@ -272,7 +273,7 @@ def _take(cuts, waiting, sums, extra, wavy, plane, rest, tiles, store, near):
     return sums, extra
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _join(total, sums, extra, plane, r, fill):
     """What `_walk` returns, from what it has summed over nodes, triangles and waterplane.
 
@@ -304,13 +305,13 @@ def _join(total, sums, extra, plane, r, fill):
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _sum_four(a, b):
     """Four numbers and four more."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _moments_of_node(m, middle, r, under, gradient):
     """The seven integrals over a node that is wholly wet, by its moments m.
 
@@ -341,13 +342,13 @@ def _moments_of_node(m, middle, r, under, gradient):
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _vertical(m, k, r):
     """Three numbers of a row of moments, along the world's vertical."""
     return m[k] * r[6] + m[k + 1] * r[7] + m[k + 2] * r[8]
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _sum(a, b):
     """Seven numbers and seven more."""
     return (

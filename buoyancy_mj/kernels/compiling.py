@@ -24,6 +24,15 @@ def inner(function: Any) -> Any:
     return njit(cache=True, error_model="numpy", _nrt=False, no_cpython_wrapper=True)(function)
 
 
+def inlined(function: Any) -> Any:
+    """Compile a kernel that makes no arrays, and have the compiler put it into all its callers.
+
+    Numba's `inline="always"` does so before it looks for types, which takes long in large callers;
+    it alone gives callers' `fastmath` to what is put into them.
+    """
+    return njit(cache=True, error_model="numpy", _nrt=False, forceinline=True)(function)
+
+
 def register_jitable(**options: Any) -> Any:
     """Numba's `register_jitable`, for a function that makes no arrays unless its callers may."""
     return extending.register_jitable(no_cfunc_wrapper=True, **options)

@@ -10,7 +10,7 @@ its depth w under the surface. All is from the middle of the hull, along the wor
 
 from typing import NamedTuple
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inlined, njit
 
 MOST = 64
 """How many cut triangles wait at most until they are summed."""
@@ -46,13 +46,13 @@ class Sums(NamedTuple):
     """The same along y [m^3]."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def nothing():
     """Sums of no triangles."""
     return Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def add(sums, more):
     """Sums, and those of more triangles."""
     return Sums(
@@ -67,7 +67,7 @@ def add(sums, more):
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def subtract(sums, less):
     """Sums without those of triangles among them."""
     return Sums(
@@ -82,14 +82,14 @@ def subtract(sums, less):
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def set_corner(cuts, corner, n, x, y, d, w):
     """Write a corner of the n-th triangle that waits, 0 for the lone one."""
     at = corner * _CORNER + n
     cuts[at + _X], cuts[at + _Y], cuts[at + _D], cuts[at + _W] = x, y, d, w
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def set_size(cuts, n, size):
     """Write the area of the n-th triangle that waits."""
     cuts[_SIZE + n] = size

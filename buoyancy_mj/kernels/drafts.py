@@ -8,6 +8,8 @@ and of these few corners, can hold the deepest.
 import math
 from typing import Annotated, NamedTuple
 
+from numba import int64
+
 from buoyancy_mj.kernels.arrays import Doubles, Words
 from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.vectors import place, rotate_back, triple
@@ -87,7 +89,7 @@ def find_draft(known, xpos, xmat, time, least):
     near = _touch(known, x, y, time) if known.curvature > 0.0 else plane
 
     # all others that may be deeper
-    box = 0
+    box = int64(0)
     while box < spans.shape[0]:
         if _bound(known, xpos, xmat, plane, box) <= best:
             box = spans[box, NEXT]
@@ -107,7 +109,7 @@ def find_draft(known, xpos, xmat, time, least):
 def _descend(known, xpos, xmat, plane, least):
     """The innermost box that reaches deep under a plane; -1 if no corner may be under `least`."""
     spans = known.spans
-    most, top, box = -math.inf, -1, 0
+    most, top, box = -math.inf, -1, int64(0)
     while box < spans.shape[0]:
         if not _bound(known, xpos, xmat, plane, box) <= least:
             reach = _reach(known, xpos, xmat, plane, box)

@@ -14,27 +14,27 @@ import numpy as np
 from numba import uint64
 
 from buoyancy_mj.kernels import tree
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inlined, njit
 from buoyancy_mj.kernels.cuts import Sums, set_corner, set_size
 from buoyancy_mj.kernels.halving import CORNER, PART, bends
 
 _ZERO, _ONE, _TWO = np.uint64(0), np.uint64(1), np.uint64(2)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def vertices_of(spans, node):
     """The first vertex of a node, and how many it has."""
     first = uint64(spans[node, tree.FIRST_VERTEX])
     return first, uint64(spans[node, tree.END_VERTEX]) - first
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def faces_of(spans, node):
     """The first face of a node, and one past its last."""
     return uint64(spans[node, tree.FIRST_FACE]), uint64(spans[node, tree.END_FACE])
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def corners(faces, face, base):
     """Where the corners of a face stand among the vertices of its leaf, from `base` on."""
     return (
@@ -44,7 +44,7 @@ def corners(faces, face, base):
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def sort_faces(faces, first, end, base, w, most, others, crossed):
     """Sort the faces of a leaf by the depths w of its vertices under the surface.
 
@@ -97,7 +97,7 @@ def sort_bent_faces(
     return many, few, cut, halved
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def set_triangle(stack, face, faces, base, x, y, d, w):
     """Write a face as the lowest triangle of a stack of `halving`."""
     j, k, o = corners(faces, face, base)
@@ -106,14 +106,14 @@ def set_triangle(stack, face, faces, base, x, y, d, w):
     stack[0, PART] = 1.0
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def count_wet(stack, row):
     """How many corners of a triangle of a stack are wet."""
     wet = (stack[row, 3] > 0.0) + (stack[row, CORNER + 3] > 0.0)
     return wet + (stack[row, 2 * CORNER + 3] > 0.0)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def sum_triangle(stack, row, size):
     """`cuts.Sums` of a wet triangle of a stack, part of a face of a size."""
     x0, y0, d0 = stack[row, 0], stack[row, 1], stack[row, 2]
@@ -122,7 +122,7 @@ def sum_triangle(stack, row, size):
     return _sum_one(x0, y0, d0, x1, y1, d1, x2, y2, d2, stack[row, PART] * size)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _sum_one(x0, y0, d0, x1, y1, d1, x2, y2, d2, area):
     """`cuts.Sums` of a wet triangle of an area."""
     a = 0.5 * ((x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0))
@@ -139,7 +139,7 @@ def _sum_one(x0, y0, d0, x1, y1, d1, x2, y2, d2, area):
     )
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def let_triangle_wait(cuts, n, stack, row, size):
     """Let a triangle of a stack that the surface cuts wait as the n-th of `cuts`."""
     a, b = stack[row, 3] > 0.0, stack[row, CORNER + 3] > 0.0
@@ -153,7 +153,7 @@ def let_triangle_wait(cuts, n, stack, row, size):
     set_size(cuts, n, stack[row, PART] * size)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def sum_faces(faces, sizes, base, picked, count, x, y, d):
     """Sum picked faces as though they were wet: `cuts.Sums` without an outline."""
     volume = first_x = first_y = square = above = area = 0.0
@@ -174,7 +174,7 @@ def sum_faces(faces, sizes, base, picked, count, x, y, d):
     return Sums(volume, first_x, first_y, square, above, area, 0.0, 0.0)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def let_wait(cuts, n, face, faces, sizes, base, x, y, d, w):
     """Let a face that the surface cuts wait as the n-th of `cuts`, its lone corner first."""
     j, k, o = corners(faces, face, base)

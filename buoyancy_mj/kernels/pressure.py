@@ -170,7 +170,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 _set_corner(stack, 1, q, dk)
                 _set_corner(stack, 2, s, do)
                 stack[0, PART] = 1.0
-                top = 0
+                top = int64(0)
                 while top >= 0:
                     more = split(
                         stack, top, curvature, allowed, (tiles, store),

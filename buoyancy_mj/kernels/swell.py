@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from buoyancy_mj.kernels.compiling import njit
+from buoyancy_mj.kernels.compiling import inlined, njit
 from buoyancy_mj.kernels.cuts import MOST, P_X, P_Y, Q_X, Q_Y
 from buoyancy_mj.kernels.hulls import WHOLE_HALF, WHOLE_MIDDLE
 from buoyancy_mj.kernels.series import bend, doublings
@@ -103,7 +103,7 @@ class Rest(NamedTuple):
     """[s]."""
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def approach(level, tiles, store, origin, r, whole, h, time, near):
     """Bring the waves to a hull, a row of `Hulls.whole`: a `Plane` and a `Rest`.
 
@@ -185,7 +185,7 @@ def _gather(tiles, store, x, y, r, time, near):
     return touch, (eta, g0, g1, g2), count - held, steepest
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def over_node(rest, r, tiles, store, near, away):
     """The rest of the elevation over a place `away` from the middle of the hull, in its frame.
 
@@ -211,14 +211,14 @@ def over_node(rest, r, tiles, store, near, away):
     return e, (s0, s1, s2)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def depth_away(plane, away):
     """Depth under the plane of a point that is `away` from the middle of the hull, in its frame."""
     g0, g1, g2 = plane.gradient
     return plane.depth + g0 * away[0] + g1 * away[1] + g2 * away[2]
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def see(vertices, first, count, plane, r, x, y, d):
     """See vertices from `first` on, from above, from the middle of the hull.
 
@@ -255,7 +255,7 @@ def add_rest(x, y, count, rest, tiles, store, near, out):
             _add_wave(x, y, count, near, i, 3, out)
 
 
-@njit(cache=True, error_model="numpy", inline="always")
+@inlined
 def _add_wave(x, y, count, swell, i, doubled, out):
     """Add the near wave i, less its plane, at places seen from the middle of the hull."""
     crest, slope, kx, ky = swell[i, CREST], swell[i, SLOPE], swell[i, K_X], swell[i, K_Y]
