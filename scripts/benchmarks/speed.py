@@ -42,7 +42,7 @@ def _draw_submersion(axes: Any, results: submersion.Results) -> None:
         title="a sphere in random attitudes",
     )
     axes.grid(alpha=0.3)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
 def _draw_profile(axes: Any, results: profile.Results) -> None:
