@@ -107,7 +107,7 @@ def test_mirrored_starts_stay_mirror_images_on_still_water(damping):
 
 @pytest.mark.parametrize("pressure", ["archimedes", "hydrostatic", "froude-krylov"])
 def test_in_waves_sides_differ_by_the_cuts_of_triangles_alone(pressure):
-    # the triangles of a box are no mirror images of each other, but fine enough all the same
+    # the triangles of a box are no mirror images of each other; finer ones are more nearly so
     model = model_of()
     data = mujoco.MjData(model)
     worst = []
@@ -124,7 +124,8 @@ def test_in_waves_sides_differ_by_the_cuts_of_triangles_alone(pressure):
         weight = model.body_mass[1] * 9.81
         worst.append(np.abs(aside).max() / weight)
         assert worst[-1] < 0.1 * tolerance
-    assert max(worst) < 1e-5
+    # or there is nothing left to differ
+    assert worst[1] < max(0.5 * worst[0], 1e-12)
 
 
 # yaw

@@ -15,7 +15,7 @@ from buoyancy_mj.submersion.sea_tiles import lay_tiles, mean_wave_number
 
 MOST_TRIANGLES = 200_000
 """Most triangles to which a mesh is refined for the waves, about."""
-GENTLE = 0.5
+GENTLE = 1.0
 """Longest edge of a mesh in waves, times their wave number, see `sea_tiles.mean_wave_number`."""
 MOST_TURNS = swell.PANEL * swell.PANELS
 """Greatest change of a wave's phase from the middle of a hull to its corner [rad].
