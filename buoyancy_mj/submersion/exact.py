@@ -88,9 +88,9 @@ class PackedHulls:
         self._sea, waves = sea_arrays(water), water.rows
         check_waves(max(0.5 * float(np.linalg.norm(m.extents)) for m in meshes), waves)
         edges, allowed = find_longest_edges(meshes, hulls.bodies, water, tolerance)
-        self._meshes = list(zip(meshes, edges, strict=True))
-        self._fills = fills
-        trees = [_tree(*each) for each in self._meshes]
+        parts = list(zip(meshes, edges, strict=True))
+        trees = [_tree(*each) for each in parts]
+        self._distinct = [(*parts[h], float(fills[h])) for h in _tell_apart(trees, fills)[0]]
         self.hulls: Hulls = conform(_hulls(meshes, trees, fills, hulls.frames, waves, allowed))
         """The hulls as kernels read them."""
         spans = self.hulls.spans
@@ -108,8 +108,7 @@ class PackedHulls:
     def find_rules(self) -> None:
         """Find by which rules pressures are summed over the nodes of `hulls`, if not known yet."""
         if not len(self.hulls.rules):
-            kept, _ = _tell_apart([_tree(*each) for each in self._meshes], self._fills)
-            found = [self._fills[h] * _rules(*self._meshes[h]) for h in kept]
+            found = [fill * _rules(mesh, edge) for mesh, edge, fill in self._distinct]
             self.hulls = self.hulls._replace(rules=np.concatenate(found))
 
     def new_scratches(self, count: int) -> list[Scratch]:
