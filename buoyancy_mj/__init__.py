@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from buoyancy_mj.errors import BuoyancyWarning as BuoyancyWarning
     from buoyancy_mj.errors import ControlError as ControlError
     from buoyancy_mj.errors import DivergenceError as DivergenceError
+    from buoyancy_mj.errors import DrawingError as DrawingError
     from buoyancy_mj.errors import EngineError as EngineError
     from buoyancy_mj.errors import EquilibriumError as EquilibriumError
     from buoyancy_mj.errors import MeshError as MeshError

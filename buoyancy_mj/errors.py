@@ -68,6 +68,10 @@ class RecordingError(BuoyancyError):
     """A recording that cannot be written to its end."""
 
 
+class DrawingError(BuoyancyError):
+    """A picture that cannot be drawn here: no graphics, no such camera, or a size of none."""
+
+
 class AutopilotError(BuoyancyError):
     """An autopilot that cannot be served: who it is, what it drives, or what it asks for."""
 

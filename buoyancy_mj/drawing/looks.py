@@ -8,6 +8,20 @@ Colour = tuple[float, float, float]
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
+class Shade:
+    """One side of the surface."""
+
+    colour: Colour
+    """The water where one looks into it."""
+    opacity: float
+    """How little shows through it, 0 to 1."""
+    roughness: float
+    """How blurred its reflections are, 0 to 1."""
+    specular: float
+    """How bright they are; 0.5 is that of water."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class Look:
     """How the sea and all around it look."""
 
@@ -20,30 +34,40 @@ class Look:
     """The lit side of clouds."""
     cloud_cover: float = 0.45
     """Part of the sky that clouds cover, 0 to 1."""
+    skylight: float = 18_000.0
+    """Light of the sky [lx]."""
     sun: Colour = (1.0, 0.94, 0.82)
     """Light of the sun."""
+    sunlight: float = 50_000.0
+    """How much of it falls on a surface that faces it [lx]."""
     sun_azimuth: float = math.radians(-40.0)
     """Where the sun stands, from x towards y [rad]."""
     sun_height: float = math.radians(34.0)
     """How high it stands over the horizon [rad]."""
 
-    # the sea from above
-    water: Colour = (0.02, 0.16, 0.24)
-    """The sea where one looks into it."""
-    opacity: float = 0.72
-    """How little shows through the surface, 0 to 1."""
-    ripple: float = 0.35
+    # the surface
+    above: Shade = Shade(colour=(0.03, 0.27, 0.34), opacity=0.6, roughness=0.08, specular=0.5)
+    """The surface from above."""
+    below: Shade = Shade(colour=(0.45, 0.78, 0.84), opacity=0.6, roughness=0.1, specular=0.5)
+    """The surface from below."""
+    ripple: float = 0.07
     """Slope of the ripples that are drawn on the surface and do not act."""
     ripple_length: float = 1.6
     """Width of the square of ripples that repeats over the surface [m]."""
 
-    # the sea from below
-    haze: Colour = (0.05, 0.33, 0.42)
+    # under water
+    deep: Colour = (0.02, 0.20, 0.28)
+    """What one sees through the surface where nothing is under it."""
+    haze: Colour = (0.04, 0.30, 0.38)
     """The water in the distance."""
-    visibility: float = 18.0
+    bright: Colour = (0.35, 0.75, 0.80)
+    """The water overhead."""
+    dark: Colour = (0.01, 0.10, 0.16)
+    """The water underfoot."""
+    sun_below: Colour = (0.62, 0.95, 1.0)
+    """Light of the sun under water."""
+    visibility: float = 40.0
     """Distance at which the haze hides all but a twentieth [m]."""
-    surface_below: Colour = (0.45, 0.78, 0.84)
-    """The surface seen from below."""
     floor: Colour = (0.55, 0.53, 0.42)
     """Sand of the sea's floor."""
 

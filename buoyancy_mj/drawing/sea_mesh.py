@@ -59,6 +59,8 @@ class SeaMesh:
         self._y = np.append(0.0, np.outer(radii, np.sin(angles)))
         self._cells = growth * np.append(0.0, np.repeat(radii, count))
         self._cells[: 1 + len(core) * count] = 0.0
+        self.count = len(self._x)
+        """Number of its vertices."""
         self._water: Water | None = None
         self._bands: list[_Band] = []
 

@@ -29,15 +29,23 @@ def paint_sky(look: Look, size: int) -> NDArray[np.uint8]:
         look: its colours.
         size: pixels along an edge.
     """
-    along = (np.arange(size) + 0.5) / size * 2.0 - 1.0
-    right, down = along[None, :, None], along[:, None, None]
-    sides = np.array(SIDES, float)
-    rays = (
-        sides[:, None, None, 2] + right * sides[:, None, None, 0] + down * sides[:, None, None, 1]
+    return _paint(shade_sky(look, _cube_rays(size)))
+
+
+def paint_depths(look: Look, size: int) -> NDArray[np.uint8]:
+    """The water all around a camera under it, as `paint_sky` paints the sky."""
+    return _paint(shade_depths(look, _cube_rays(size)))
+
+
+def shade_depths(look: Look, rays: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Colours of water without end (..., 3), as `shade_sky` has those of the sky."""
+    height = rays[..., 2:] / np.linalg.norm(rays, axis=-1, keepdims=True)
+    haze, bright, dark = (np.array(one) for one in (look.haze, look.bright, look.dark))
+    return np.where(
+        height > 0.0,
+        _mix(haze, bright, _smoothstep(height)),
+        _mix(haze, dark, _smoothstep(-height)),
     )
-    # y points up there, z here
-    world = np.stack([rays[..., 0], -rays[..., 2], rays[..., 1]], axis=-1)
-    return np.rint(255.0 * shade_sky(look, world)).astype(np.uint8)
 
 
 def shade_sky(look: Look, rays: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -50,6 +58,8 @@ def shade_sky(look: Look, rays: NDArray[np.float64]) -> NDArray[np.float64]:
     rays = rays / np.linalg.norm(rays, axis=-1, keepdims=True)
     height = np.clip(rays[..., 2:], 0.0, 1.0)
     colour = _mix(np.array(look.horizon), np.array(look.zenith), 1.0 - (1.0 - height) ** 4)
+    # other waves, which a steep wave reflects, hide where the sea begins
+    colour = _mix(colour, np.array(look.deep), _smoothstep(rays[..., 2:] / -0.6))
 
     # clouds on a plane overhead, which thin out towards the horizon
     flat = rays[..., :2] / (height + 0.12)
@@ -72,6 +82,24 @@ def sun_ray(look: Look) -> NDArray[np.float64]:
             math.sin(look.sun_height),
         ]
     )
+
+
+def _cube_rays(size: int) -> NDArray[np.float64]:
+    """Where the pixels of a cube texture lie (6, size, size, 3), world frame."""
+    along = (np.arange(size) + 0.5) / size * 2.0 - 1.0
+    right, down = along[None, :, None], along[:, None, None]
+    sides = np.array(SIDES, float)
+    rays = (
+        sides[:, None, None, 2] + right * sides[:, None, None, 0] + down * sides[:, None, None, 1]
+    )
+    # y points up there, z here
+    return np.stack([rays[..., 0], -rays[..., 2], rays[..., 1]], axis=-1)
+
+
+def _paint(colours: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Colours from 0 to 1 as pixels."""
+    pixels: NDArray[np.uint8] = np.rint(255.0 * colours).astype(np.uint8)
+    return pixels
 
 
 def _billow(places: NDArray[np.float64]) -> NDArray[np.float64]:
