@@ -17,8 +17,6 @@ class Shade:
     """How little shows through it, 0 to 1."""
     roughness: float
     """How blurred its reflections are, 0 to 1."""
-    specular: float
-    """How bright they are; 0.5 is that of water."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -46,24 +44,31 @@ class Look:
     """How high it stands over the horizon [rad]."""
 
     # the surface
-    above: Shade = Shade(colour=(0.03, 0.27, 0.34), opacity=0.6, roughness=0.08, specular=0.5)
+    above: Shade = Shade(colour=(0.03, 0.27, 0.34), opacity=0.6, roughness=0.08)
     """The surface from above."""
-    below: Shade = Shade(colour=(0.45, 0.78, 0.84), opacity=0.6, roughness=0.1, specular=0.5)
+    below: Shade = Shade(colour=(0.60, 0.94, 0.97), opacity=0.8, roughness=0.3)
     """The surface from below."""
     ripple: float = 0.07
     """Slope of the ripples that are drawn on the surface and do not act."""
-    ripple_length: float = 1.6
-    """Width of the square of ripples that repeats over the surface [m]."""
+    ripple_length: float = 2.0
+    """Width of the square of ripples that repeats over the surface, over the radius of what floats.
+    """
 
     # under water
     deep: Colour = (0.02, 0.20, 0.28)
     """What one sees through the surface where nothing is under it."""
-    haze: Colour = (0.04, 0.30, 0.38)
+    haze: Colour = (0.05, 0.38, 0.46)
     """The water in the distance."""
-    bright: Colour = (0.35, 0.75, 0.80)
+    bright: Colour = (0.60, 0.90, 0.92)
     """The water overhead."""
-    dark: Colour = (0.01, 0.10, 0.16)
+    dark: Colour = (0.06, 0.26, 0.34)
     """The water underfoot."""
+    skylight_below: float = 28_000.0
+    """Light from all around [lx]; more than reaches there, as a diver's eye would have it."""
+    sunlight_below: float = 40_000.0
+    """Light of the sun [lx]."""
+    lamp_below: float = 25_000.0
+    """Light of a lamp beside the camera [lx], which keeps the colours of what is near."""
     sun_below: Colour = (0.62, 0.95, 1.0)
     """Light of the sun under water."""
     visibility: float = 40.0
@@ -74,3 +79,9 @@ class Look:
 
 DAYLIGHT = Look()
 """A clear day on open water."""
+
+
+def to_linear(colour: Colour) -> Colour:
+    """A colour as light adds up, for one as screens show it (IEC 61966-2-1)."""
+    red, green, blue = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in colour)
+    return red, green, blue

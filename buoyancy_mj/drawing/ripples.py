@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 COMPONENTS = 60
 """Number of ripples."""
-ORDERS = (2, 24)
+ORDERS = (2, 40)
 """Least and most crests along a side of the map."""
 
 
@@ -34,4 +34,6 @@ def paint_ripples(size: int, slope: float) -> NDArray[np.uint8]:
     slopes *= slope / np.sqrt((slopes**2).sum(axis=-1).mean())
     normals = np.dstack([slopes, np.ones((size, size))])
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
-    return np.rint(127.5 + 127.5 * normals).astype(np.uint8)
+    # what lies between two numbers is drawn at random, or the surface would have steps
+    noise = np.random.default_rng(5).random(normals.shape)
+    return np.floor(127.5 + 127.5 * normals + noise).clip(0, 255).astype(np.uint8)

@@ -1,14 +1,12 @@
 """`FilamentFrames`: pictures of a model in its sea, drawn by Filament."""
 
-from typing import Any
-
 import mujoco
 import numpy as np
 from mujoco import mjrf
 from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.filament.graphics import open_context
-from buoyancy_mj.drawing.filament.sea import SEGMENT, FilamentSea
+from buoyancy_mj.drawing.filament.sea import FilamentSea
 from buoyancy_mj.drawing.filament.sky import FilamentSky
 from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.shots import Shot
@@ -86,6 +84,8 @@ class FilamentFrames:
         near = NEAR * shot.subject
         request.camera = mjrf.Camera(**shot.frustum(self._width / self._height, near, FAR))
         request.viewport.width, request.viewport.height = self._width, self._height
+        request.headlight = bool(self._sea.is_below)
+        request.headlight_intensity = self._look.lamp_below
         if segments:
             request.draw_mode = mjrf.DrawMode.DRAW_MODE_SEGMENTATION_BY_ID
             request.post_processing = False

@@ -6,7 +6,7 @@ from typing import Any
 
 import mujoco
 
-from buoyancy_mj.drawing.looks import Look
+from buoyancy_mj.drawing.looks import Look, to_linear
 
 SEEN = 0.05
 """How much still shows through the haze at the visibility."""
@@ -35,7 +35,7 @@ def _haze_model(look: Look, visibility: float | None) -> mujoco.MjModel:
         # the light that is left after x metres is e^(-density x)
         density = -math.log(SEEN) / visibility
         spec.add_numeric(name="filament.fog.density", data=[density])
-        spec.add_numeric(name="filament.fog.color", data=list(look.haze))
+        spec.add_numeric(name="filament.fog.color", data=to_linear(look.haze))
         spec.add_numeric(name="filament.fog.distance", data=[0.0])
         spec.add_numeric(name="filament.fog.maximum_opacity", data=[1.0])
         # the same at every height

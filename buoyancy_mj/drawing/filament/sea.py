@@ -15,7 +15,7 @@ from buoyancy_mj.sea.water import Water
 
 SEGMENT = 0xFFFFFF
 """What marks the sea in a picture of segments; MuJoCo counts its own from 1."""
-PIXELS = 256
+PIXELS = 512
 """Pixels along a side of the ripples."""
 DRIFT = np.array([0.05, 0.03])
 """Speed of ripples over the water [m/s]."""
@@ -44,6 +44,7 @@ class FilamentSea:
         """Whether the camera was under water when the sea was drawn; None before."""
         self._scene, self._look = scene, look
         self._mesh = SeaMesh(radius, curvature)
+        self._tile = look.ripple_length * radius
 
         # triangles with both windings, so that the surface is there from below too
         faces = np.vstack([self._mesh.faces, self._mesh.faces[:, ::-1]])
@@ -85,10 +86,11 @@ class FilamentSea:
         surface = self._mesh.shape(water, centre[:2], time)
         vertices = surface.vertices.copy()
         vertices[:, :2] += centre[:2]
-        normals = -surface.normals if is_below else surface.normals
-        ripples = vertices[:, :2] / self._look.ripple_length
+        ripples = vertices[:, :2] / self._tile
         data = mjrf.MeshData(compute_bounds=True)
-        packed = b"".join(np.ascontiguousarray(a, np.float32) for a in (vertices, normals, ripples))
+        packed = b"".join(
+            np.ascontiguousarray(a, np.float32) for a in (vertices, surface.normals, ripples)
+        )
         data.set_vertices(self._config, packed)
         data.set_indices(self._config, self._indices)
         self._buffer.upload(data)
@@ -106,9 +108,8 @@ class FilamentSea:
             color=[*shade.colour, shade.opacity],
             roughness=shade.roughness,
             metallic=0.0,
-            specular=shade.specular,
             segmentation_id=SEGMENT,
-            uv_offset=[*(DRIFT * time / look.ripple_length % 1.0), 0.0],
+            uv_offset=[*(DRIFT * time / self._tile % 1.0), 0.0],
         )
         material.normal_texture = self._ripples
         self._renderable.set_material(material)

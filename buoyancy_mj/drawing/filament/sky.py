@@ -1,5 +1,6 @@
 """`FilamentSky`: the sky of a scene of Filament, and its light, above and under water."""
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,8 @@ from buoyancy_mj.drawing.filament.graphics import upload_cube
 from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.sky import paint_depths, paint_sky, sun_ray
 
-PIXELS = 384
-"""Pixels along an edge of the sky."""
+PIXELS, COARSE = 384, 64
+"""Pixels along an edge of the sky, and of what has no small parts."""
 
 
 class FilamentSky:
@@ -27,15 +28,21 @@ class FilamentSky:
     def __init__(self, context: Any, scene: Any, look: Look = DAYLIGHT) -> None:
         self._scene, self._look = scene, look
         self._is_below: bool | None = None
-        pictures = {False: paint_sky(look, PIXELS), True: paint_depths(look, PIXELS // 8)}
-        self._skies = {side: upload_cube(context, sides) for side, sides in pictures.items()}
+        depths = upload_cube(context, paint_depths(look, COARSE))
+        self._skies = {False: upload_cube(context, paint_sky(look, PIXELS)), True: depths}
+        # clouds would lie on the water like oil
+        clear = upload_cube(context, paint_sky(dataclasses.replace(look, cloud_cover=0.0), COARSE))
+        # a light does not keep its picture
+        self._lights = {False: clear, True: depths}
         self._glows = {
             side: context.create_light(
                 mjrf.LightParams(
-                    type=mjrf.LightType.LIGHT_IMAGE, texture=sky, intensity=look.skylight
+                    type=mjrf.LightType.LIGHT_IMAGE,
+                    texture=light,
+                    intensity=look.skylight_below if side else look.skylight,
                 )
             )
-            for side, sky in self._skies.items()
+            for side, light in self._lights.items()
         }
         self._sun = context.create_light(
             mjrf.LightParams(
@@ -61,5 +68,6 @@ class FilamentSky:
         self._is_below = is_below
         self._scene.set_skybox(self._skies[is_below])
         self._scene.add_light(self._glows[is_below])
-        self._sun.set_color(self._look.sun_below if is_below else self._look.sun)
-        self._sun.set_intensity(self._look.sunlight * (0.8 if is_below else 1.0))
+        look = self._look
+        self._sun.set_color(look.sun_below if is_below else look.sun)
+        self._sun.set_intensity(look.sunlight_below if is_below else look.sunlight)
