@@ -7,6 +7,7 @@ from typing import Any
 import mujoco
 
 from buoyancy_mj.drawing.looks import Look, to_linear
+from buoyancy_mj.drawing.sea_mesh import HORIZON
 
 SEEN = 0.05
 """How much still shows through the haze at the visibility."""
@@ -38,6 +39,8 @@ def _haze_model(look: Look, visibility: float | None) -> mujoco.MjModel:
         spec.add_numeric(name="filament.fog.color", data=to_linear(look.haze))
         spec.add_numeric(name="filament.fog.distance", data=[0.0])
         spec.add_numeric(name="filament.fog.maximum_opacity", data=[1.0])
+        # not over the sky, which shows the depths there
+        spec.add_numeric(name="filament.fog.cut_off_distance", data=[1.1 * HORIZON])
         # the same at every height
         spec.add_numeric(name="filament.fog.height_falloff", data=[0.0])
     return spec.compile()

@@ -11,12 +11,15 @@ from buoyancy_mj.drawing.filament.haze import set_haze
 from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.ripples import paint_ripples
 from buoyancy_mj.drawing.sea_mesh import SeaMesh
+from buoyancy_mj.drawing.sky import sun_ray
 from buoyancy_mj.sea.water import Water
 
 SEGMENT = 0xFFFFFF
 """What marks the sea in a picture of segments; MuJoCo counts its own from 1."""
 PIXELS = 512
 """Pixels along a side of the ripples."""
+WINDOW = 0.66
+"""Cosine of the angle from the vertical within which one looks out of the water."""
 DRIFT = np.array([0.05, 0.03])
 """Speed of ripples over the water [m/s]."""
 
@@ -43,6 +46,7 @@ class FilamentSea:
         self.is_below: bool | None = None
         """Whether the camera was under water when the sea was drawn; None before."""
         self._scene, self._look = scene, look
+        self._away = -sun_ray(look)
         self._mesh = SeaMesh(radius, curvature)
         self._tile = look.ripple_length * radius
 
@@ -88,9 +92,11 @@ class FilamentSea:
         vertices[:, :2] += centre[:2]
         ripples = vertices[:, :2] / self._tile
         data = mjrf.MeshData(compute_bounds=True)
-        packed = b"".join(
-            np.ascontiguousarray(a, np.float32) for a in (vertices, surface.normals, ripples)
-        )
+        normals = surface.normals
+        if is_below:
+            normals = normals + _mirror(vertices, eye)[:, None] * self._away
+        columns = (vertices, normals, ripples)
+        packed = b"".join(np.ascontiguousarray(one, np.float32).tobytes() for one in columns)
         data.set_vertices(self._config, packed)
         data.set_indices(self._config, self._indices)
         self._buffer.upload(data)
@@ -113,6 +119,16 @@ class FilamentSea:
         )
         material.normal_texture = self._ripples
         self._renderable.set_material(material)
+
+
+def _mirror(vertices: NDArray[np.float32], eye: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How much each point (n,) of the surface mirrors the depths to an eye under it, 0 to 1.
+
+    Out of a cone of 49 degrees about the vertical all light is turned back (Snell's window).
+    """
+    rays = vertices - eye
+    cosine = rays[:, 2] / np.linalg.norm(rays, axis=1)
+    return np.clip((WINDOW - cosine) / WINDOW, 0.0, 1.0)
 
 
 def _configure(vertices: int, indices: int) -> Any:
