@@ -148,9 +148,9 @@ class Follower:
         """Height of the camera [m], clear of the waves."""
         level, clear = self._water.level, self._crest + 0.2 * up
         if not self._is_below:
-            return max(middle[2] + RISE * distance, level + clear)
+            return max(float(middle[2]) + RISE * distance, level + clear)
         rise = FALL if self._name == UNDER else 0.5 * RISE
-        return min(middle[2] + rise * distance, level - clear)
+        return min(float(middle[2]) + rise * distance, level - clear)
 
     def _place(self) -> tuple[float, float]:
         """Where in the picture the vehicles are: one in the third from which it comes."""

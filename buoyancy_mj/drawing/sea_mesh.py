@@ -39,12 +39,15 @@ class SeaMesh:
     Args:
         radius: distance from the middle within which the surface is exact [m]: that of what floats.
         curvature: bound of the curvature of the surface [1/m], see `Water.curvature`.
+        spokes: fewest and most vertices around a ring; with less than usual the surface is coarser.
     """
 
-    def __init__(self, radius: float, curvature: float = 0.0) -> None:
+    def __init__(
+        self, radius: float, curvature: float = 0.0, spokes: tuple[int, int] = SPOKES
+    ) -> None:
         # a cell of length h stands off a curvature c by c h^2 / 4 at most
         wanted = math.pi * radius * math.sqrt(curvature / TOLERANCE)
-        count = 8 * math.ceil(min(max(wanted, SPOKES[0]), SPOKES[1]) / 8)
+        count = 8 * math.ceil(min(max(wanted, spokes[0]), spokes[1]) / 8)
         growth = 2.0 * math.pi / count
         core = np.linspace(0.0, radius, math.ceil(1.0 / growth) + 1)[1:]
         steps = math.ceil(math.log(HORIZON / radius) / math.log1p(growth))

@@ -37,6 +37,6 @@ def clear_sight(
             return eye
         passed += distance
         if not moves[model.geom_bodyid[geom[0]]]:
-            return target + AWAY * passed * ray
+            return np.asarray(target + AWAY * passed * ray)
         passed += 1e-6 * reach
     return eye

@@ -22,14 +22,15 @@ PUFFS = 48
 """Number of cosines that clouds are made of."""
 
 
-def paint_sky(look: Look, size: int) -> NDArray[np.uint8]:
+def paint_sky(look: Look, size: int, *, has_clouds: bool = True) -> NDArray[np.uint8]:
     """The sky as the six sides (6, size, size, 3) of a cube texture, in sRGB.
 
     Args:
         look: its colours.
         size: pixels along an edge.
+        has_clouds: as for `shade_sky`.
     """
-    return _paint(shade_sky(look, _cube_rays(size)))
+    return _paint(shade_sky(look, _cube_rays(size), has_clouds=has_clouds))
 
 
 def paint_depths(look: Look, size: int) -> NDArray[np.uint8]:
@@ -48,12 +49,15 @@ def shade_depths(look: Look, rays: NDArray[np.float64]) -> NDArray[np.float64]:
     )
 
 
-def shade_sky(look: Look, rays: NDArray[np.float64]) -> NDArray[np.float64]:
+def shade_sky(
+    look: Look, rays: NDArray[np.float64], *, has_clouds: bool = True
+) -> NDArray[np.float64]:
     """Colours of the sky (..., 3), from 0 to 1.
 
     Args:
         look: its colours.
         rays: where one looks (..., 3), world frame, of any length.
+        has_clouds: whether there are clouds, which take time.
     """
     rays = rays / np.linalg.norm(rays, axis=-1, keepdims=True)
     height = np.clip(rays[..., 2:], 0.0, 1.0)
@@ -62,9 +66,10 @@ def shade_sky(look: Look, rays: NDArray[np.float64]) -> NDArray[np.float64]:
     colour = _mix(colour, np.array(look.deep), _smoothstep(rays[..., 2:] / -0.6))
 
     # clouds on a plane overhead, which thin out towards the horizon
-    flat = rays[..., :2] / (height + 0.12)
-    puff = _smoothstep((_billow(flat) - 1.0 + 2.0 * look.cloud_cover) / 1.2)
-    colour = _mix(colour, np.array(look.cloud), 0.85 * puff * _smoothstep(height / 0.25))
+    if has_clouds:
+        flat = rays[..., :2] / (height + 0.12)
+        puff = _smoothstep((_billow(flat) - 1.0 + 2.0 * look.cloud_cover) / 1.2)
+        colour = _mix(colour, np.array(look.cloud), 0.85 * puff * _smoothstep(height / 0.25))
 
     # the sun and its glow
     cosine = np.clip(rays @ sun_ray(look), 0.0, 1.0)[..., None]

@@ -12,14 +12,13 @@ from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.ripples import paint_ripples
 from buoyancy_mj.drawing.sea_mesh import SeaMesh
 from buoyancy_mj.drawing.sky import sun_ray
+from buoyancy_mj.drawing.window import find_mirrored
 from buoyancy_mj.sea.water import Water
 
 SEGMENT = 0xFFFFFF
 """What marks the sea in a picture of segments; MuJoCo counts its own from 1."""
 PIXELS = 512
 """Pixels along a side of the ripples."""
-WINDOW = 0.66
-"""Cosine of the angle from the vertical within which one looks out of the water."""
 DRIFT = np.array([0.05, 0.03])
 """Speed of ripples over the water [m/s]."""
 
@@ -46,6 +45,7 @@ class FilamentSea:
         self.is_below: bool | None = None
         """Whether the camera was under water when the sea was drawn; None before."""
         self._scene, self._look = scene, look
+        # where the surface mirrors the depths, no sun falls through
         self._away = -sun_ray(look)
         self._mesh = SeaMesh(radius, curvature)
         self._tile = look.ripple_length * radius
@@ -92,9 +92,11 @@ class FilamentSea:
         vertices[:, :2] += centre[:2]
         ripples = vertices[:, :2] / self._tile
         data = mjrf.MeshData(compute_bounds=True)
-        normals = surface.normals
+        normals: NDArray[np.floating] = surface.normals
         if is_below:
-            normals = normals + _mirror(vertices, eye)[:, None] * self._away
+            rays = vertices - eye
+            upward = rays[:, 2] / np.linalg.norm(rays, axis=1)
+            normals = normals + find_mirrored(upward)[:, None] * self._away
         columns = (vertices, normals, ripples)
         packed = b"".join(np.ascontiguousarray(one, np.float32).tobytes() for one in columns)
         data.set_vertices(self._config, packed)
@@ -119,16 +121,6 @@ class FilamentSea:
         )
         material.normal_texture = self._ripples
         self._renderable.set_material(material)
-
-
-def _mirror(vertices: NDArray[np.float32], eye: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How much each point (n,) of the surface mirrors the depths to an eye under it, 0 to 1.
-
-    Out of a cone of 49 degrees about the vertical all light is turned back (Snell's window).
-    """
-    rays = vertices - eye
-    cosine = rays[:, 2] / np.linalg.norm(rays, axis=1)
-    return np.clip((WINDOW - cosine) / WINDOW, 0.0, 1.0)
 
 
 def _configure(vertices: int, indices: int) -> Any:

@@ -1,6 +1,5 @@
 """`FilamentSky`: the sky of a scene of Filament, and its light, above and under water."""
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -31,7 +30,7 @@ class FilamentSky:
         depths = upload_cube(context, paint_depths(look, COARSE))
         self._skies = {False: upload_cube(context, paint_sky(look, PIXELS)), True: depths}
         # clouds would lie on the water like oil
-        clear = upload_cube(context, paint_sky(dataclasses.replace(look, cloud_cover=0.0), COARSE))
+        clear = upload_cube(context, paint_sky(look, COARSE, has_clouds=False))
         # a light does not keep its picture
         self._lights = {False: clear, True: depths}
         self._glows = {
