@@ -1,5 +1,6 @@
 """Recordings of a run: opened together, kept whatever ends it, and closed together."""
 
+import contextlib
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import typer
 
 from buoyancy_mj.cli.console import err, print_line
+from buoyancy_mj.cli.films import FilmFlags
 from buoyancy_mj.errors import RecordingError, SceneError
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
@@ -70,6 +72,10 @@ class Files(NamedTuple):
     """The table."""
     mcap: Path | None = None
     """The messages of ROS 2."""
+    video: Path | None = None
+    """The film."""
+    screenshot: Path | None = None
+    """The picture."""
 
 
 class Recordings:
@@ -81,6 +87,7 @@ class Recordings:
         series: the table; None for none.
         live: whether to stream to a Rerun viewer.
         streams: where the run goes as messages of ROS 2.
+        films: how it is filmed.
         waits: whether the run waits for a Foxglove viewer, and goes no faster than real time.
 
     Raises:
@@ -95,21 +102,28 @@ class Recordings:
         *,
         live: bool = False,
         streams: StreamFlags,
+        films: FilmFlags | None = None,
         waits: bool = False,
     ) -> None:
         self._simulation = simulation
-        self._stream = streams.open(simulation, waits=waits)
-        try:
-            self._recording, self._series = open_sinks(simulation, record, series, live=live)
-        except BaseException:
+        with contextlib.ExitStack() as undo:
+            self._film, self._still = (films or FilmFlags()).open(simulation)
+            if self._film is not None:
+                undo.callback(self._film.discard)
+            self._stream = streams.open(simulation, waits=waits)
             if self._stream is not None:
-                self._stream.discard()
-            raise
+                undo.callback(self._stream.discard)
+            self._recording, self._series = open_sinks(simulation, record, series, live=live)
+            undo.pop_all()
+        if self._film is not None and self._film.kept:
+            print_line(
+                err, f"note: the first {self._film.kept:.2f} s of the film are there already"
+            )
         if self._stream is not None and self._stream.port is not None:
             place = f"ws://{self._stream.host}:{self._stream.port}"
             wait = "; the run begins when a panel shows something of it" if waits else ""
             print_line(err, f"open {place} in Foxglove, as a Foxglove WebSocket{wait}")
-        sinks = (self._recording, self._series, self._stream)
+        sinks = (self._recording, self._series, self._stream, self._film, self._still)
         self._adders = [sink.add for sink in sinks if sink is not None]
 
     def __bool__(self) -> bool:
@@ -134,17 +148,22 @@ class Recordings:
             self._recording.close(summary) if self._recording is not None else None,
             self._series.close() if self._series is not None else None,
             self._stream.close(summary) if self._stream is not None else None,
+            self._film.close() if self._film is not None else None,
+            self._still.close() if self._still is not None else None,
         )
 
     def keep(self, summary: Callable[[], Summary]) -> None:
         """Close all after a run that broke off, and say where they are."""
         recording, series, stream = self._recording, self._series, self._stream
+        film = self._film
         if recording is not None and not recording.closed:
             self._keep("recording", lambda: recording.close(summary(), complete=False))
         if series is not None and not series.closed:
             self._keep("series", lambda: series.close(complete=False))
         if stream is not None and not stream.closed:
             self._keep("MCAP file", lambda: stream.close(complete=False))
+        if film is not None and not film.closed:
+            self._keep("film", lambda: film.close(complete=False))
 
     def _keep(self, what: str, close: Callable[[], Path | None]) -> None:
         """Close something that broke off, and say where it is."""

@@ -9,6 +9,7 @@ from rich.table import Table
 
 from buoyancy_mj.cli.application import command
 from buoyancy_mj.cli.console import err, out, show_progress
+from buoyancy_mj.cli.films import FilmFlags
 from buoyancy_mj.cli.flags import (
     Json,
     RunFlags,
@@ -33,6 +34,7 @@ def run(
     flags: RunFlags,
     selection: SelectionFlags,
     streams: StreamFlags,
+    films: FilmFlags,
     record: Annotated[
         Path | None, typer.Option(help="Record to this file instead of recordings/NAME.rrd.")
     ] = None,
@@ -55,7 +57,7 @@ def run(
     ] = "qfrc_passive",
     as_json: Json = False,
 ) -> None:
-    """Run a scene headless, record it and sum it up."""
+    """Run a scene headless, record it or film it, and sum it up."""
     if record is not None and no_record:
         raise SceneError("--record and --no-record contradict each other; give one of them")
     check_recording_name(record)
@@ -69,7 +71,9 @@ def run(
     ):
         simulation = Simulation(read_scene(path, settings), through=through, trust=flags.trust)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
-    recordings = Recordings(simulation, target, series, live=live, streams=streams, waits=True)
+    recordings = Recordings(
+        simulation, target, series, live=live, streams=streams, films=films, waits=True
+    )
     files = _run_to_end(simulation, recordings)
 
     # its summary

@@ -61,6 +61,10 @@ def print_files(files: Files) -> None:
         print_line(out, f"the series is in '{files.series}'")
     if files.mcap is not None:
         print_line(out, f"the messages of ROS 2 are in '{files.mcap}'")
+    if files.video is not None:
+        print_line(out, f"the film is '{files.video}'")
+    if files.screenshot is not None:
+        print_line(out, f"the picture is '{files.screenshot}'")
 
 
 def _drop_infinite(value: Any) -> Any:

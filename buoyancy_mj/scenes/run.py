@@ -102,3 +102,11 @@ def find_run(
     elif not plugin_instances(model) and buoyancy.model._address != model._address:
         raise ModelError("buoyancy is of another model; make it of this one, Buoyancy(model, ...)")
     return OwnRun(model, data, buoyancy, find_vehicles(model, buoyancy))
+
+
+def place_at_start(run: Run) -> mujoco.MjData:
+    """Data with the poses of a run as it stands, without a step of its own."""
+    data = mujoco.MjData(run.model)
+    data.qpos[:] = run.data.qpos
+    mujoco.mj_kinematics(run.model, data)
+    return data

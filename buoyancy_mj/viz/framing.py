@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.scenes.run import Run
 
 
 def find_middle(centres: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
@@ -25,14 +24,6 @@ def measure_extent(vehicles: Iterable[Vehicle], data: mujoco.MjData) -> float:
         vehicle.length + 2.0 * float(np.linalg.norm(root - middle))
         for vehicle, root in zip(vehicles, roots, strict=True)
     )
-
-
-def place_at_start(run: Run) -> mujoco.MjData:
-    """Data with the poses of a run as it stands, without a step of its own."""
-    data = mujoco.MjData(run.model)
-    data.qpos[:] = run.data.qpos
-    mujoco.mj_kinematics(run.model, data)
-    return data
 
 
 def arrow_scale(vehicles: Iterable[Vehicle], body: int) -> float:

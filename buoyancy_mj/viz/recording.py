@@ -12,7 +12,7 @@ import rerun as rr
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
-from buoyancy_mj.scenes.run import Run
+from buoyancy_mj.scenes.run import Run, place_at_start
 from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.vehicle.instruments.instruments import Instruments
 from buoyancy_mj.viz import instruments, plots
@@ -20,7 +20,7 @@ from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
 from buoyancy_mj.viz.forces import ForceDrawing
-from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
+from buoyancy_mj.viz.framing import find_middle, measure_extent
 from buoyancy_mj.viz.live_viewer import open_viewer
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.rrd import RrdFile

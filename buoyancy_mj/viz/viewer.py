@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ModelError
+from buoyancy_mj.scenes.run import place_at_start
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.sea.water import Water
-from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
+from buoyancy_mj.viz.framing import find_middle, measure_extent
 
 CELLS = 24
 """Number of tiles along each side of the surface."""

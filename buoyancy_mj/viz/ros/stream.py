@@ -11,9 +11,9 @@ from foxglove.websocket import Capability, ServerListener, WebSocketServer
 
 from buoyancy_mj.errors import RecordingError
 from buoyancy_mj.scenes.frames import Frame
-from buoyancy_mj.scenes.run import Run
+from buoyancy_mj.scenes.run import Run, place_at_start
 from buoyancy_mj.scenes.summary import Summary
-from buoyancy_mj.viz.framing import find_middle, measure_extent, place_at_start
+from buoyancy_mj.viz.framing import find_middle, measure_extent
 from buoyancy_mj.viz.ros import messages as ros
 from buoyancy_mj.viz.ros.markers import MARKER, MARKERS, draw_geoms, draw_sea
 from buoyancy_mj.viz.ros.mcap_file import McapFile

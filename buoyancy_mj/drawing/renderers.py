@@ -1,0 +1,80 @@
+"""`open_frames`: the renderer that draws here."""
+
+from typing import Protocol
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from buoyancy_mj.drawing.looks import Look
+from buoyancy_mj.drawing.shots import Shot
+from buoyancy_mj.errors import DrawingError, choices
+from buoyancy_mj.sea.water import Water
+
+FILAMENT, CLASSIC = "filament", "classic"
+"""MuJoCo's renderers."""
+
+
+class Frames(Protocol):
+    """A renderer for one model."""
+
+    def draw(
+        self,
+        data: mujoco.MjData,
+        shot: Shot,
+        centre: NDArray[np.float64],
+        *,
+        segments: bool = False,
+    ) -> NDArray[np.uint8]:
+        """A picture (height, width, 3)."""
+        ...
+
+
+def open_frames(
+    name: str | None,
+    model: mujoco.MjModel,
+    water: Water,
+    radius: float,
+    size: tuple[int, int],
+    look: Look,
+) -> Frames:
+    """A renderer by its name; None for Filament where it can draw, else the classic one.
+
+    Raises:
+        DrawingError: there is none of that name, or it cannot draw here.
+    """
+    if name not in (FILAMENT, CLASSIC, None):
+        raise DrawingError(f"there is no renderer '{name}'; {choices(name, (FILAMENT, CLASSIC))}")
+    reasons = []
+    for one, open_one in ((FILAMENT, _open_filament), (CLASSIC, _open_classic)):
+        if name in (one, None):
+            try:
+                return open_one(model, water, radius, size, look)
+            except DrawingError as error:
+                reasons.append(error)
+    if name is not None:
+        raise reasons[0]
+    raise DrawingError(f"nothing can draw here: {'; '.join(map(str, reasons))}")
+
+
+def _open_filament(
+    model: mujoco.MjModel, water: Water, radius: float, size: tuple[int, int], look: Look
+) -> Frames:
+    """Filament."""
+    try:
+        from buoyancy_mj.drawing.filament.frames import FilamentFrames
+    except ImportError as error:
+        raise DrawingError(
+            f"Filament cannot be loaded: {' '.join(str(error).split())}; or draw with the classic "
+            "renderer"
+        ) from error
+    return FilamentFrames(model, water, radius, size, look)
+
+
+def _open_classic(
+    model: mujoco.MjModel, water: Water, radius: float, size: tuple[int, int], look: Look
+) -> Frames:
+    """The classic renderer."""
+    from buoyancy_mj.drawing.classic.frames import ClassicFrames
+
+    return ClassicFrames(model, water, radius, size, look)
