@@ -11,6 +11,7 @@ from buoyancy_mj._names import read_homes as _read_homes
 from buoyancy_mj.records import show_fields as _show_fields
 
 if TYPE_CHECKING:
+    from buoyancy_mj.drawing.draw_water import draw_water as draw_water
     from buoyancy_mj.engine.buoyancy import Buoyancy as Buoyancy
     from buoyancy_mj.engine.plugin import add_water as add_water
     from buoyancy_mj.engine.plugin import water_in as water_in

@@ -25,6 +25,8 @@ ROOM = 0.65
 """Part of the distance from a third to the edge of the picture that vehicles fill."""
 RISE, FALL = 0.21, -0.35
 """Height of the camera over the vehicles, over its distance: as usual, and for `under`."""
+FLAT = 4.0
+"""Distance of the camera over the height from a trough to where it stands, at least."""
 LAG = 0.4
 """Time by which the camera follows the vehicles late [s]."""
 SLACK = 0.25
@@ -114,6 +116,9 @@ class Follower:
         )
         if self._name != UNDER:
             self._choose_side(middle, up)
+        if not self._is_below:
+            # over crests and into troughs, with the horizon still in the picture
+            distance = max(distance, FLAT * 3.0 * self._crest)
 
         turn = 2.0 * math.pi * self._time / TURN if self._name == ORBIT else 0.0
         bearing = self._subject.heading + BEARING + turn
@@ -146,7 +151,7 @@ class Follower:
 
     def _height(self, middle: NDArray[np.float64], distance: float, up: float) -> float:
         """Height of the camera [m], clear of the waves."""
-        level, clear = self._water.level, self._crest + 0.2 * up
+        level, clear = self._water.level, 1.8 * self._crest + 0.2 * up
         if not self._is_below:
             return max(float(middle[2]) + RISE * distance, level + clear)
         rise = FALL if self._name == UNDER else 0.5 * RISE

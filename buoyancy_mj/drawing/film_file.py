@@ -18,6 +18,8 @@ from buoyancy_mj.drawing.film_kinds import KINDS, Kind
 from buoyancy_mj.errors import RecordingError, choices
 from buoyancy_mj.scenes.recording_file import RecordingFile
 
+HEAD = 4096
+"""Bytes at the beginning of a film that hold its mark."""
 GROWS_AS = ".mkv"
 """End of the name under which a film grows."""
 OPTIONS = {
@@ -55,8 +57,8 @@ class FilmFile:
         self.kept = 0
         """How many of them an earlier run has drawn."""
         writer = _Writer(self._file)
-        # clusters of a second, written at once
-        options = {"cluster_time_limit": "1000", "flush_packets": "1"}
+        # short clusters, written at once
+        options = {"cluster_time_limit": "250", "flush_packets": "1"}
         self._container = av.open(writer, "w", format="matroska", options=options)
         self._container.metadata["comment"] = mark
         self._stream: Any = self._container.add_stream(
@@ -146,7 +148,7 @@ class FilmFile:
         others = [
             one
             for one in mine.parent.glob(f"{stem}.partial*{GROWS_AS}")
-            if one != mine and _read_mark(one) == mark
+            if one != mine and _has_mark(one, mark)
         ]
         films = {one: list(_read_packets(one)) for one in others}
         best = max(films.values(), key=len, default=[])
@@ -189,14 +191,13 @@ def find_kind(path: Path, size: tuple[int, int], fps: int) -> Kind:
     return kind
 
 
-def _read_mark(path: Path) -> str | None:
-    """The mark of a film; None for what is none."""
+def _has_mark(path: Path, mark: str) -> bool:
+    """Whether a file, however short, is a film of a mark."""
     try:
-        with av.open(path) as film:
-            marks = {key.lower(): value for key, value in film.metadata.items()}
-            return marks.get("comment")
-    except (OSError, av.FFmpegError):
-        return None
+        with path.open("rb") as file:
+            return mark.encode() in file.read(HEAD)
+    except OSError:
+        return False
 
 
 def _read_packets(path: Path) -> Iterator[Any]:

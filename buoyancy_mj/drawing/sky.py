@@ -1,5 +1,6 @@
 """Pictures of the sky: a cube around the camera, with the sun and clouds."""
 
+import functools
 import math
 import random
 
@@ -22,6 +23,7 @@ PUFFS = 48
 """Number of cosines that clouds are made of."""
 
 
+@functools.lru_cache(maxsize=4)
 def paint_sky(look: Look, size: int, *, has_clouds: bool = True) -> NDArray[np.uint8]:
     """The sky as the six sides (6, size, size, 3) of a cube texture, in sRGB.
 
@@ -33,6 +35,7 @@ def paint_sky(look: Look, size: int, *, has_clouds: bool = True) -> NDArray[np.u
     return _paint(shade_sky(look, _cube_rays(size), has_clouds=has_clouds))
 
 
+@functools.lru_cache(maxsize=4)
 def paint_depths(look: Look, size: int) -> NDArray[np.uint8]:
     """The water all around a camera under it, as `paint_sky` paints the sky."""
     return _paint(shade_depths(look, _cube_rays(size)))
@@ -67,9 +70,11 @@ def shade_sky(
 
     # clouds on a plane overhead, which thin out towards the horizon
     if has_clouds:
-        flat = rays[..., :2] / (height + 0.12)
+        up = height[..., 0] > 0.0
+        flat = rays[up, :2] / (height[up] + 0.12)
         puff = _smoothstep((_billow(flat) - 1.0 + 2.0 * look.cloud_cover) / 1.2)
-        colour = _mix(colour, np.array(look.cloud), 0.85 * puff * _smoothstep(height / 0.25))
+        part = 0.85 * puff * _smoothstep(height[up] / 0.25)
+        colour[up] = _mix(colour[up], np.array(look.cloud), part)
 
     # the sun and its glow
     cosine = np.clip(rays @ sun_ray(look), 0.0, 1.0)[..., None]
@@ -110,14 +115,15 @@ def _paint(colours: NDArray[np.float64]) -> NDArray[np.uint8]:
 def _billow(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """A smooth random height (..., 1) at places (..., 2), about from -1 to 1."""
     draw = random.Random(3)
-    total = np.zeros(places.shape[:-1])
+    places = places.astype(np.float32)
+    total = np.zeros(places.shape[:-1], np.float32)
     for index in range(PUFFS):
         # an octave more for each eighth of them, half as high
         scale = 1.2 * 2.0 ** (4.0 * index / PUFFS)
         turn, phase = draw.uniform(0.0, 2.0 * math.pi), draw.uniform(0.0, 2.0 * math.pi)
-        wave = scale * np.array([math.cos(turn), 1.6 * math.sin(turn)])
+        wave = np.array([scale * math.cos(turn), 1.6 * scale * math.sin(turn)], np.float32)
         total += np.cos(places @ wave + phase) / scale**0.8
-    return (total / 2.2)[..., None]
+    return (total.astype(np.float64) / 2.2)[..., None]
 
 
 def _mix(

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.drawing.classic.graphics import open_gl
 from buoyancy_mj.drawing.classic.sea import WIDE, Eye, add_sea
 from buoyancy_mj.drawing.classic.sky import add_sky
-from buoyancy_mj.drawing.classic.triangles import SEGMENT
+from buoyancy_mj.drawing.classic.triangles import AMBIENT, SEGMENT
 from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.shots import Shot
 from buoyancy_mj.sea.water import Water
@@ -19,8 +19,6 @@ MOST_GEOMS = 30_000
 """Geoms that a scene may have, those of the model and triangles."""
 NEAR, FAR = 0.02, 600.0
 """Distances of the nearest and the farthest that is drawn, over that of what is looked at."""
-AMBIENT = 0.35
-"""Least ambient light, for a model that brings no lamp."""
 
 
 class ClassicFrames:
@@ -102,6 +100,7 @@ class ClassicFrames:
         """Put the model, the sky and the sea into the scene, the farthest first."""
         scene, look = self._scene, self._look
         self._place_camera(data, shot)
+        # for a model that brings no lamp
         headlight = scene.lights[0].ambient
         headlight[:] = np.maximum(headlight, AMBIENT)
         far = 0.5 * FAR * shot.subject

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.classic.triangles import SEGMENT, add_triangles
-from buoyancy_mj.drawing.looks import Look
+from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.sea_mesh import SeaMesh
 from buoyancy_mj.drawing.sky import shade_sky
 from buoyancy_mj.drawing.window import find_mirrored
@@ -18,6 +18,8 @@ from buoyancy_mj.sea.water import Water
 
 SPOKES = (24, 128)
 """Fewest and most vertices around a ring."""
+MOST_TRIANGLES = 25_000
+"""Most triangles of the sea in a picture."""
 WIDE = 2.5
 """Half the angle of the cone in which triangles are drawn, over that of the picture's height."""
 FACING = 0.02
@@ -62,7 +64,8 @@ def add_sea(
     *,
     radius: float,
     eye: Eye,
-    look: Look,
+    look: Look = DAYLIGHT,
+    most: int = MOST_TRIANGLES,
 ) -> None:
     """Add the surface of the sea to a scene, which keeps what is in it.
 
@@ -74,11 +77,12 @@ def add_sea(
         radius: distance from there within which it is [m].
         eye: where one looks from.
         look: its colours.
+        most: how many triangles it may take.
 
     Raises:
         DrawingError: the scene has no room.
     """
-    room = scene.maxgeom - scene.ngeom
+    room = min(most, scene.maxgeom - scene.ngeom)
     mesh = _find_mesh(radius, water.curvature, room, eye.forward is not None)
     surface = mesh.shape(water, centre[:2], time)
     vertices = surface.vertices + np.array([centre[0], centre[1], 0.0])

@@ -6,6 +6,8 @@ from numpy.typing import NDArray
 
 SEGMENT = 0x5EA
 """`objid` of what is drawn of the sea, whose `objtype` is unknown to MuJoCo."""
+AMBIENT = 0.35
+"""Ambient light where a scene does not know its lamps, as that of a viewer's user."""
 
 
 def add_triangles(
@@ -34,7 +36,8 @@ def add_triangles(
     rotations = np.stack([first, second, third], axis=2).reshape(-1, 9)
     rgba = colours.astype(np.float32)
     # what ambient light leaves, they shine of themselves
-    ambient = sum(float(np.mean(lamp.ambient)) for lamp in scene.lights[: scene.nlight])
+    lamps = scene.lights[: scene.nlight]
+    ambient = sum(float(np.mean(lamp.ambient)) for lamp in lamps) if lamps else AMBIENT
     glow = max(0.0, 1.0 - ambient)
     geoms, size, kind = scene.geoms, np.ones(3), mujoco.mjtGeom.mjGEOM_TRIANGLE
     count = min(len(corners), scene.maxgeom - scene.ngeom)
