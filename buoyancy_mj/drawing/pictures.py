@@ -1,5 +1,6 @@
 """`Pictures`: what a camera sees of a run, frame by frame."""
 
+import dataclasses
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -35,7 +36,8 @@ class Pictures:
         size: width and height [pixels].
         renderer: 'filament' or 'classic'; None for Filament where it can draw.
         has_hud: whether time, sea and scale are written over them.
-        look: colours and brightness of sea and sky.
+        look: colours and brightness of sea and sky. Its sun turns with the first vehicle, so that
+            it lights what the camera sees.
 
     Raises:
         DrawingError: no such camera, renderer or size, or nothing can draw here.
@@ -63,6 +65,7 @@ class Pictures:
         aspect = size[0] / size[1]
         self._camera = find_camera(camera, run.model, self._subject, water, aspect)
         radius = max(self._subject.measure(start))
+        look = dataclasses.replace(look, sun_azimuth=look.sun_azimuth + self._subject.heading)
         self._frames = open_frames(renderer, run.model, water, radius, size, look)
         self._hud: Hud | None = None
         if has_hud:
