@@ -10,6 +10,7 @@ import pytest
 from PIL import Image
 
 from buoyancy_mj import (
+    BuoyancyWarning,
     DrawingError,
     JonswapSea,
     LevelOscillation,
@@ -404,6 +405,18 @@ def test_flags_that_make_no_sense_are_refused(arguments, message, tmp_path, monk
         app(["run", "auv_drop_still", "--no-record", *arguments])
     assert capsys.readouterr().err == f"error: {message}\n"
     assert os.listdir(tmp_path) == []
+
+
+def test_without_vulkan_the_classic_renderer_draws_and_says_why(monkeypatch):
+    try:
+        open_gl()
+    except DrawingError as error:
+        pytest.skip(str(error))
+    monkeypatch.setattr(graphics, "count_devices", lambda: 0)
+    sim = simulation()
+    with pytest.warns(BuoyancyWarning, match="^the classic renderer draws: Filament draws through"):
+        pictures = Pictures(sim, size=SIZE, has_hud=False)
+    assert pictures.draw(sim.frame()).std() > 10.0
 
 
 def test_without_graphics_both_renderers_say_what_to_install(monkeypatch):
