@@ -394,6 +394,8 @@ def test_unknown_renderers_and_sizes_are_refused():
         (["--video", "a.mp4", "--size", "big"],
          "--size is 'big'; write WIDTHxHEIGHT in pixels, as in 1280x720"),
         (["--at", "1"], "--at is given without --screenshot; give both"),
+        (["--fps", "30"], "--fps is given without --video; give both"),
+        (["--no-hud"], "--no-hud is given without --video and --screenshot; give one of them"),
         (["--screenshot", "a.png", "--at", "30"],
          "--at is 30, and the scene lasts from 0 to 8 s; take a time in it"),
         (["--screenshot", "a.jpg"], "the picture is 'a.jpg'; its name ends in .png"),

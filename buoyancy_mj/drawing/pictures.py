@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 MISSING = "{} needs {}, which is not installed: pip install 'buoyancy_mj[video]'"
 """The message for a library that the extra `video` brings."""
 
+SIZE = (1280, 720)
+"""Width and height of a picture [pixels], if not told otherwise."""
 SIZES = (16, 8192)
 """Least and greatest width and height [pixels]."""
 
@@ -49,7 +51,7 @@ class Pictures:
         run: Run,
         *,
         camera: str = FOLLOW,
-        size: tuple[int, int] = (1280, 720),
+        size: tuple[int, int] = SIZE,
         renderer: str | None = None,
         has_hud: bool = True,
         look: Look = DAYLIGHT,
