@@ -73,8 +73,6 @@ class Look:
     """Light of the sun under water."""
     visibility: float = 40.0
     """Distance at which the haze hides all but a twentieth [m]."""
-    floor: Colour = (0.55, 0.53, 0.42)
-    """Sand of the sea's floor."""
 
 
 DAYLIGHT = Look()
