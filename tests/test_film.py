@@ -5,6 +5,7 @@ import json
 import os
 import sys
 
+import av
 import numpy as np
 import pytest
 from PIL import Image
@@ -31,8 +32,6 @@ from buoyancy_mj.drawing.hud import Hud
 from buoyancy_mj.drawing.pictures import Pictures
 from buoyancy_mj.drawing.sea_state import describe_sea
 from buoyancy_mj.scenes import catalog
-
-av = pytest.importorskip("av")
 
 SIZE = (160, 90)
 WHITE = 255
