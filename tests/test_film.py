@@ -325,6 +325,12 @@ def test_a_full_disk_ends_a_film_that_plays(tmp_path, monkeypatch):
     assert 5 < length(partial)[0] <= film.count
 
 
+def test_a_picture_is_a_png(tmp_path):
+    with pytest.raises(RecordingError) as caught:
+        Still(Shades(), tmp_path / "a.jpg")
+    assert str(caught.value) == f"the picture is '{tmp_path}/a.jpg'; its name ends in .png"
+
+
 def test_the_last_frame_is_the_picture_where_no_time_is_given(tmp_path):
     sim, shades = simulation("duration=0.3"), Shades()
     still = Still(shades, tmp_path / "a.png")
@@ -397,7 +403,7 @@ def test_unknown_renderers_and_sizes_are_refused():
         (["--no-hud"], "--no-hud is given without --video and --screenshot; give one of them"),
         (["--screenshot", "a.png", "--at", "30"],
          "--at is 30, and the scene lasts from 0 to 8 s; take a time in it"),
-        (["--screenshot", "a.jpg"], "the picture is 'a.jpg'; its name ends in .png"),
+        (["--screenshot", "a.jpg"], "--screenshot is 'a.jpg'; a picture's name ends in .png"),
     ],
 )  # fmt: skip
 def test_flags_that_make_no_sense_are_refused(arguments, message, tmp_path, monkeypatch, capsys):

@@ -36,6 +36,8 @@ class FilmFlags:
     """Leave out the time, the sea and the scale that stand over pictures."""
 
     def __post_init__(self) -> None:
+        if self.screenshot is not None and self.screenshot.suffix != ".png":
+            raise SceneError(f"--screenshot is '{self.screenshot}'; a picture's name ends in .png")
         if self.at is not None and self.screenshot is None:
             raise SceneError("--at is given without --screenshot; give both")
         if self.fps is not None and self.video is None:
