@@ -65,7 +65,7 @@ class SeaMesh:
         self.count = len(self._x)
         """Number of its vertices."""
         self._water: Water | None = None
-        self._bands: list[_Band] = []
+        self._bands: list[Band] = []
 
     def shape(self, water: Water, centre: NDArray[np.float64], time: float) -> Surface:
         """The surface around a point at a time.
@@ -76,7 +76,7 @@ class SeaMesh:
             time: [s].
         """
         if water is not self._water:
-            self._water, self._bands = water, _split(water, self._cells)
+            self._water, self._bands = water, split_waves(water, self._cells)
         heights = np.full(len(self._x), water.level)
         slopes = np.zeros((len(self._x), 2))
         for band in self._bands:
@@ -99,7 +99,7 @@ class _Rows:
     """Components (n, 6), see `sea.waves.Wave`."""
 
 
-class _Band(NamedTuple):
+class Band(NamedTuple):
     """Waves of about one length, and how much of them each vertex has."""
 
     water: Water
@@ -108,7 +108,7 @@ class _Band(NamedTuple):
     """The part of their elevation that each of the first vertices (k,) has; others have none."""
 
 
-def _split(water: Water, cells: NDArray[np.float64]) -> list[_Band]:
+def split_waves(water: Water, cells: NDArray[np.float64]) -> list[Band]:
     """The waves of a sea by octaves of their lengths, on vertices with cells (n,) [m] long."""
     if not len(water.rows):
         return []
@@ -122,7 +122,7 @@ def _split(water: Water, cells: NDArray[np.float64]) -> list[_Band]:
         weights = np.clip((LOST - lengths) / (LOST - WHOLE), 0.0, 1.0)
         count = int(np.count_nonzero(weights))
         sea = Water(waves=_Rows(np.ascontiguousarray(rows[chosen])))
-        bands.append(_Band(sea, weights[:count]))
+        bands.append(Band(sea, weights[:count]))
     return bands
 
 

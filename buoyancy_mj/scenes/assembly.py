@@ -59,7 +59,7 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
         SceneError: the start names a keyframe that does not exist, or a shift of the centre of
             gravity does not say of which body.
     """
-    spec, parts = _join_files(scene)
+    spec, parts = join_files(scene)
 
     # what the scene decides
     spec.option.timestep = scene.timestep
@@ -93,8 +93,12 @@ def assemble(scene: Scene, *, with_water: bool = False) -> Assembly:
     return Assembly(model, data, afloat)
 
 
-def _join_files(scene: Scene) -> tuple[mujoco.MjSpec, tuple[Part, ...]]:
-    """The vehicles in their environment, not yet compiled, and what came from which file."""
+def join_files(scene: Scene) -> tuple[mujoco.MjSpec, tuple[Part, ...]]:
+    """The vehicles in their environment, not yet compiled, and what came from which file.
+
+    Raises:
+        ModelError: a file is missing, MuJoCo refuses it, or it has no body that could float.
+    """
     if scene.vehicle is not None:
         (entry,) = scene.entries
         spec = _read_entry(scene, entry)

@@ -60,15 +60,19 @@ def view_simulation(simulation: Simulation) -> None:
             time.sleep(max(0.0, FRAME_TIME - (time.perf_counter() - started)))
 
 
-def _open_viewer(simulation: Simulation) -> Any:
-    """Open MuJoCo's viewer, which would end the process where there is no display."""
+def has_display() -> bool:
+    """Whether a window can be opened here."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        if not glfw.init():
-            raise ModelError(
-                "MuJoCo's viewer needs a display, and there is none here; "
-                "use 'run', which needs none"
-            )
+        return bool(glfw.init())
+
+
+def _open_viewer(simulation: Simulation) -> Any:
+    """Open MuJoCo's viewer, which would end the process where there is no display."""
+    if not has_display():
+        raise ModelError(
+            "MuJoCo's viewer needs a display, and there is none here; use 'run', which needs none"
+        )
     try:
         return mujoco.viewer.launch_passive(
             simulation.model, simulation.data, show_left_ui=False, show_right_ui=False
