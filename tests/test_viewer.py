@@ -19,16 +19,29 @@ def test_the_eye_of_a_free_camera_is_where_mujoco_has_it():
     assert _find_eye(camera) == pytest.approx(middle, abs=1e-5)
 
 
-def test_without_a_display_the_viewer_says_so():
+@pytest.mark.parametrize(
+    ("renderer", "message"),
+    [
+        (
+            "classic",
+            "error: MuJoCo's viewer needs a display, and there is none here; "
+            "use 'run', which needs none\n",
+        ),
+        (
+            "studio",
+            "error: Studio's window needs a display, and there is none here; "
+            "give --web, and open the page in a browser\n",
+        ),
+    ],
+)
+def test_without_a_display_the_viewer_says_so(renderer, message):
     environment = {
         key: value for key, value in os.environ.items() if key not in ("DISPLAY", "WAYLAND_DISPLAY")
     }
+    command = ["view", "hourglass_drop_still", "--renderer", renderer]
     done = subprocess.run(
-        [sys.executable, "-m", "buoyancy_mj", "view", "hourglass_drop_still"],
+        [sys.executable, "-m", "buoyancy_mj", *command],
         env=environment, capture_output=True, text=True, check=False, timeout=600,
     )  # fmt: skip
     assert done.returncode == 1
-    assert done.stderr == (
-        "error: MuJoCo's viewer needs a display, and there is none here; "
-        "use 'run', which needs none\n"
-    )
+    assert done.stderr == message

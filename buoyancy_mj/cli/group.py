@@ -13,7 +13,7 @@ from typer.main import get_command_from_info
 MODULES = {
     "run": "runs",
     "list": "runs",
-    "view": "runs",
+    "view": "views",
     "inspect": "inspections",
     "ballast": "ballasts",
     "sitl": "autopilots",

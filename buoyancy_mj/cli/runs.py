@@ -1,4 +1,4 @@
-"""`run`, `view` and `list`: one scene at a time."""
+"""`run` and `list`: one scene at a time."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,7 +14,6 @@ from buoyancy_mj.cli.flags import (
     Json,
     RunFlags,
     SceneArgument,
-    SceneFlags,
     SelectionFlags,
     check_recording_name,
     check_table_name,
@@ -101,16 +100,6 @@ def list_() -> None:
         for name, line in rows.items():
             table.add_row(name, line)
         out.print(table)
-
-
-@command()
-def view(scene: SceneArgument, flags: SceneFlags, selection: SelectionFlags) -> None:
-    """Show a scene in MuJoCo's interactive viewer, with its water."""
-    from buoyancy_mj.viz.viewer import view_simulation  # needs a display, which 'run' does not
-
-    settings = [*flags.overrides(), *selection.overrides()]
-    read = read_scene(catalog.scene_path(scene), settings)
-    view_simulation(Simulation(read, trust=flags.trust))
 
 
 def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
