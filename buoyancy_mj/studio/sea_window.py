@@ -6,6 +6,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
+from buoyancy_mj.drawing.filament.graphics import quiet
 from buoyancy_mj.studio.library import load_renderer
 
 load_renderer()
@@ -31,7 +32,8 @@ class SeaWindow(native_viewer.NativeViewer):
 
     def __init__(self, config: Any, endpoint: Any, *, plugins: list[Any]) -> None:
         self._kept: list[Any] = []
-        super().__init__(config, endpoint, plugins=plugins)
+        with quiet():
+            super().__init__(config, endpoint, plugins=plugins)
         self._window: Any = _Backdrop(self._window, self)
 
     @property

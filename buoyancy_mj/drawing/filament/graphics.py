@@ -59,7 +59,7 @@ def open_context() -> Any:
             f"Filament cannot be loaded: {error}; install it (pip install mujoco-studio), or draw "
             "with the classic renderer"
         ) from error
-    with _quiet():
+    with quiet():
         return mjrf.Context(mjrf.ContextConfig(graphics_api=api))
 
 
@@ -110,7 +110,7 @@ def _upload(
 
 
 @contextlib.contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Keep from the standard output what Filament says there of itself."""
     sys.stdout.flush()
     kept = os.dup(1)
