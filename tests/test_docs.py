@@ -191,7 +191,7 @@ def understand(command, *words):
         listed = CliRunner().invoke(app, [command, "--only", "none"]).output
         assert set(parsed.params["only"] or ()) <= set(re.findall(r"\w+", listed))
         return
-    if command in ("view", "sitl"):
+    if command in ("view", "sitl") or set(words) & {"--video", "--screenshot"}:
         return
     if command == "run":
         shown = ("--live", "--foxglove")

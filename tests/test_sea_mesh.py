@@ -67,7 +67,9 @@ def test_the_mesh_has_no_hole_and_faces_up():
     rim = np.hypot(*(vertices[-1, :2] - CENTRE))
     count = round(2.0 * np.pi / np.arctan2(*np.abs(vertices[2, :2] - CENTRE)[::-1]))
     assert rim >= HORIZON
-    assert areas.sum() == pytest.approx(0.5 * count * rim**2 * np.sin(2.0 * np.pi / count), rel=1e-6)
+    assert areas.sum() == pytest.approx(
+        0.5 * count * rim**2 * np.sin(2.0 * np.pi / count), rel=1e-6
+    )
     # each inner edge is between two triangles, run through both ways
     edges = np.concatenate([mesh.faces[:, [i, (i + 1) % 3]] for i in range(3)]).astype(np.int64)
     codes = edges @ [len(vertices), 1]

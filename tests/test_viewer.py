@@ -6,58 +6,17 @@ import mujoco
 import numpy as np
 import pytest
 
-from buoyancy_mj import RegularWave, Water
-from buoyancy_mj.viz.viewer import draw_surface
-
-MODEL = mujoco.MjModel.from_xml_string("<mujoco/>")
-CENTRE = np.array([3.0, -2.0, 0.5])
+from buoyancy_mj.viz.viewer import _find_eye
 
 
-def tiles(water, maxgeom=1000, time=0.3):
-    scene = mujoco.MjvScene(MODEL, maxgeom=maxgeom)
-    draw_surface(scene, water, CENTRE, 4.0, time)
-    return scene
-
-
-def test_still_water_is_one_tile_with_its_top_at_the_level():
-    scene = tiles(Water(level=0.2))
-    assert scene.ngeom == 1
-    tile = scene.geoms[0]
-    assert tile.pos[2] + tile.size[2] == pytest.approx(0.2, abs=1e-6)
-    assert tile.size[:2] == pytest.approx([2.0, 2.0])
-
-
-def test_waves_are_tiles_that_lie_on_the_surface():
-    water = Water(waves=RegularWave(0.2, period=2.0, direction=0.7))
-    scene = tiles(water)
-    assert scene.ngeom == 24 * 24
-    for tile in scene.geoms[: scene.ngeom : 37]:
-        normal = tile.mat[:, 2]
-        top = tile.pos + normal * tile.size[2]
-        assert float(water.elevation(top[0], top[1], 0.3)) == pytest.approx(top[2], abs=5e-3)
-        h = 1e-4
-        slope = [
-            (
-                water.elevation(top[0] + h * a, top[1] + h * b, 0.3)
-                - water.elevation(top[0], top[1], 0.3)
-            )
-            / h
-            for a, b in ((1, 0), (0, 1))
-        ]
-        assert -normal[:2] / normal[2] == pytest.approx(np.array(slope, float), abs=0.02)
-
-
-def test_the_tiles_fit_the_scene_and_follow_the_vehicle():
-    scene = tiles(Water(waves=RegularWave(0.2, period=2.0)), maxgeom=100)
-    assert scene.ngeom == 100
-    middles = np.array([tile.pos for tile in scene.geoms])
-    assert middles[:, :2].mean(axis=0) == pytest.approx(CENTRE[:2], abs=0.4)
-
-
-def test_drawing_again_replaces_what_was_drawn():
-    scene = tiles(Water(waves=RegularWave(0.2, period=2.0)))
-    draw_surface(scene, Water(), CENTRE, 4.0, 0.0)
-    assert scene.ngeom == 1
+def test_the_eye_of_a_free_camera_is_where_mujoco_has_it():
+    model = mujoco.MjModel.from_xml_string("<mujoco/>")
+    scene, camera = mujoco.MjvScene(model, maxgeom=10), mujoco.MjvCamera()
+    camera.lookat[:], camera.distance, camera.azimuth, camera.elevation = [1, 2, 3], 5, 140, -20
+    option, every = mujoco.MjvOption(), mujoco.mjtCatBit.mjCAT_ALL.value
+    mujoco.mjv_updateScene(model, mujoco.MjData(model), option, None, camera, every, scene)
+    middle = np.mean([eye.pos for eye in scene.camera], axis=0)
+    assert _find_eye(camera) == pytest.approx(middle, abs=1e-5)
 
 
 def test_without_a_display_the_viewer_says_so():

@@ -12,8 +12,9 @@ from buoyancy_mj.errors import RecordingError
 from buoyancy_mj.files import replace_file
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
+from buoyancy_mj.values import read_whole_number
 
-SLOWEST, FASTEST = 1, 240
+RATES = (1, 240)
 """Least and most pictures in a second of a film."""
 
 
@@ -35,11 +36,8 @@ class Film:
     """
 
     def __init__(self, run: Run, pictures: Pictures, path: Path, fps: int = 30) -> None:
-        if not SLOWEST <= fps <= FASTEST:
-            raise RecordingError(
-                f"fps is {fps}; it must be a whole number from {SLOWEST} to {FASTEST}"
-            )
-        self._pictures, self._fps = pictures, fps
+        self._fps = read_whole_number(RecordingError, "fps", fps, *RATES)
+        self._pictures = pictures
         self._begin: float | None = None
         try:
             from buoyancy_mj.drawing.film_file import FilmFile

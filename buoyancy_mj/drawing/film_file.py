@@ -206,5 +206,6 @@ def _read_packets(path: Path) -> Iterator[Any]:
         # as the encoder gives them
         unpack = BitStreamFilterContext("h264_mp4toannexb", film.streams.video[0])
         for packet in film.demux(video=0):
-            if packet.dts is not None:
+            # the last one is empty
+            if packet.size:
                 yield from unpack.filter(packet)

@@ -60,8 +60,9 @@ def _make_mp4(source: Path, path: Path, _: int) -> None:
     ):
         stream = made.add_stream_from_template(film.streams.video[0])
         for packet in film.demux(video=0):
-            if packet.dts is not None:
-                packet.stream = stream
+            # the last one is empty
+            if packet.size:
+                packet.stream, packet.dts = stream, packet.pts
                 made.mux(packet)
 
 

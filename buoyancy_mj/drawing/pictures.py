@@ -14,6 +14,7 @@ from buoyancy_mj.drawing.subject import Subject
 from buoyancy_mj.errors import DrawingError, RecordingError
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run, place_at_start
+from buoyancy_mj.values import read_whole_number
 
 if TYPE_CHECKING:
     from buoyancy_mj.drawing.hud import Hud
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
 MISSING = "{} needs {}, which is not installed: pip install 'buoyancy_mj[video]'"
 """The message for a library that the extra `video` brings."""
 
-SIZES = range(16, 8193)
-"""Widths and heights that pictures may have [pixels]."""
+SIZES = (16, 8192)
+"""Least and greatest width and height [pixels]."""
 
 
 class Pictures:
@@ -51,12 +52,8 @@ class Pictures:
         has_hud: bool = True,
         look: Look = DAYLIGHT,
     ) -> None:
-        for side in size:
-            if side not in SIZES:
-                raise DrawingError(
-                    f"the size is {size[0]}x{size[1]}; width and height are from {SIZES[0]} to "
-                    f"{SIZES[-1]} pixels"
-                )
+        for what, side in zip(("width", "height"), size, strict=True):
+            read_whole_number(DrawingError, f"the {what}", side, *SIZES)
         self.size = size
         """Width and height [pixels]."""
         self.name = f"{camera} {size} {renderer} {has_hud} {look}"

@@ -16,8 +16,6 @@ from buoyancy_mj.scenes.run import place_at_start
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.viz.framing import find_middle, measure_extent
 
-MOST_TRIANGLES = 5000
-"""Most triangles of the water's surface, which take time in each picture."""
 FRAME_TIME = 1.0 / 60.0
 """Wall time between two pictures [s]."""
 AMBIENT = 0.35
@@ -57,7 +55,7 @@ def view_simulation(simulation: Simulation) -> None:
                 middle = find_middle(vehicle.centre_of_mass(data) for vehicle in vehicles)
                 scene, eye = viewer.user_scn, Eye(_find_eye(viewer.cam))
                 scene.ngeom = 0
-                add_sea(scene, water, middle, data.time, radius=size, eye=eye, most=MOST_TRIANGLES)
+                add_sea(scene, water, middle, data.time, radius=size, eye=eye)
             viewer.sync()
             time.sleep(max(0.0, FRAME_TIME - (time.perf_counter() - started)))
 

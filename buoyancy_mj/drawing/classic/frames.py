@@ -15,8 +15,8 @@ from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.shots import Shot
 from buoyancy_mj.sea.water import Water
 
-MOST_GEOMS = 30_000
-"""Geoms that a scene may have, those of the model and triangles."""
+MOST_GEOMS, MOST_TRIANGLES = 40_000, 25_000
+"""Geoms that a scene may have, and triangles of the sea among them."""
 NEAR, FAR = 0.02, 600.0
 """Distances of the nearest and the farthest that is drawn, over that of what is looked at."""
 
@@ -108,7 +108,10 @@ class ClassicFrames:
         spread = min(WIDE * shot.fovy / 2.0, np.pi / 2.0)
         eye = Eye(shot.eye, shot.forward, spread)
         time = float(data.time)
-        add_sea(scene, self._water, centre, time, radius=self._radius, eye=eye, look=look)
+        add_sea(
+            scene, self._water, centre, time,
+            radius=self._radius, eye=eye, look=look, most=MOST_TRIANGLES,
+        )  # fmt: skip
         # the haze hides the far end of the sea
         self._context.fogStart = 0.0
         self._context.fogEnd = max(look.visibility, 4.0 * shot.subject)

@@ -1,6 +1,7 @@
 """OpenGL for the classic renderer, without a display where that works."""
 
 import ctypes.util
+import importlib
 import os
 import sys
 from typing import Any
@@ -35,14 +36,20 @@ def open_gl() -> Any:
 
 def _find_class() -> Any:
     """The class of contexts that may work here."""
-    if os.environ.get("MUJOCO_GL") or not sys.platform.startswith("linux"):
-        from mujoco.gl_context import GLContext
-    elif ctypes.util.find_library("EGL"):
-        from mujoco.egl import GLContext
-    elif ctypes.util.find_library("OSMesa"):
-        from mujoco.osmesa import GLContext
-    elif any(map(os.environ.get, SCREENS)):
-        from mujoco.glfw import GLContext
-    else:
-        raise OSError("neither EGL nor OSMesa nor a display")
-    return GLContext
+    module = importlib.import_module(f"mujoco.{_choose()}")
+    return module.GLContext
+
+
+def _choose() -> str:
+    """The library that makes contexts, as MuJoCo calls it."""
+    chosen = os.environ.get("MUJOCO_GL", "").lower()
+    if chosen in ("egl", "osmesa", "glfw"):
+        return chosen
+    if not sys.platform.startswith("linux"):
+        return "cgl" if sys.platform == "darwin" else "glfw"
+    for name, library in (("egl", "EGL"), ("osmesa", "OSMesa")):
+        if ctypes.util.find_library(library):
+            return name
+    if any(map(os.environ.get, SCREENS)):
+        return "glfw"
+    raise OSError("neither EGL nor OSMesa nor a display")

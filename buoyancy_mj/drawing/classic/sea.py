@@ -18,8 +18,8 @@ from buoyancy_mj.sea.water import Water
 
 SPOKES = (24, 128)
 """Fewest and most vertices around a ring."""
-MOST_TRIANGLES = 25_000
-"""Most triangles of the sea in a picture."""
+MOST_TRIANGLES = 6000
+"""Most triangles that the sea takes of a scene, if not told otherwise."""
 WIDE = 2.5
 """Half the angle of the cone in which triangles are drawn, over that of the picture's height."""
 FACING = 0.02
@@ -108,15 +108,16 @@ def add_sea(
 @functools.lru_cache(maxsize=8)
 def _find_mesh(radius: float, curvature: float, room: int, is_part: bool) -> SeaMesh:
     """The finest mesh of which what is seen fits into a number of geoms."""
-    most = SPOKES[1]
-    while most >= SPOKES[0]:
-        mesh = SeaMesh(radius, curvature, spokes=(most, most))
-        if len(mesh.faces) * (0.5 if is_part else 1.0) <= room:
+    needed = 0
+    for count in range(SPOKES[1], SPOKES[0] - 1, -8):
+        mesh = SeaMesh(radius, curvature, spokes=(count, count))
+        # a camera that looks one way sees less than half
+        needed = len(mesh.faces) // (2 if is_part else 1)
+        if needed <= room:
             return mesh
-        most -= 8
     raise DrawingError(
-        f"the scene has room for {room} more geoms, and the sea takes {len(mesh.faces)} at least; "
-        "make the renderer with a larger max_geom"
+        f"the scene has room for {room} more geoms, and the sea takes {needed} at least; make the "
+        "renderer with a larger max_geom"
     )
 
 
