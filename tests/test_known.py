@@ -1,11 +1,8 @@
 """Where this package is installed, MuJoCo knows its plugins, and nobody imports it."""
 
 import ctypes
-import os
 import subprocess
 import sys
-import tomllib
-from pathlib import Path
 
 import pytest
 
@@ -14,8 +11,8 @@ from buoyancy_mj.engine import announcing, library
 from buoyancy_mj.engine.announced import PLUGINS
 from buoyancy_mj.engine.device_kinds import KINDS
 from buoyancy_mj.vehicle.sensors.kinds import CHANNELS
+from tests.installed import install
 
-ROOT = Path(__file__).parents[1]
 DRAFT = 0.24
 """Of the box, 0.4 m high and 0.6 times as dense as the water [m]."""
 BOX = """<mujoco>
@@ -52,21 +49,13 @@ def float_box(model):
 @pytest.fixture
 def run(tmp_path):
     """Runs code in a process where this package is installed, beside a box.xml."""
-    entries = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]
-    ((name, target),) = entries["mujoco.plugins"].items()
-    installed = tmp_path / "buoyancy_mj-0.1.0.dist-info"
-    installed.mkdir()
-    (installed / "METADATA").write_text(
-        "Metadata-Version: 2.1\nName: buoyancy_mj\nVersion: 0.1.0\n"
-    )
-    (installed / "entry_points.txt").write_text(f"[mujoco.plugins]\n{name} = {target}\n")
+    environment = install(tmp_path)
     (tmp_path / "box.xml").write_text(BOX.replace("DENSITY", "1000"))
 
     def run_code(code, *options):
         return subprocess.run(
             [sys.executable, *options, "-c", f"import mujoco\n{FLOAT}\n{code}"],
-            env=os.environ | {"PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT}"},
-            cwd=tmp_path, capture_output=True, text=True, timeout=300,
+            env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=300,
         )  # fmt: skip
 
     return run_code

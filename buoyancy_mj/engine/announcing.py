@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from buoyancy_mj.engine.announced import PLUGINS, Announced
+from buoyancy_mj.engine.kept_scenes import keep_scenes
 from buoyancy_mj.engine.plugin_struct import find_plugin, register_plugin, replace_hooks
 from buoyancy_mj.errors import BuoyancyWarning, EngineError
 from buoyancy_mj.hulls.plugins import note_plugin
@@ -50,6 +51,7 @@ def announce() -> None:
 def load_plugins() -> None:
     """Import all that stands behind the plugins, so that MuJoCo has their compiled hooks."""
     importlib.import_module("buoyancy_mj.vehicle.plugins")
+    keep_scenes()
 
 
 def put_hooks(plugin: Announced, functions: Mapping[str, int]) -> int:
