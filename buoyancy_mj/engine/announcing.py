@@ -105,9 +105,9 @@ def _import_rest(_model: int, _instance: int) -> None:
 
 
 def _make_init(name: str) -> Any:
-    """The first `init` of a plugin, which a model of a binary file calls, and where imports fail.
+    """The first `init` of a plugin, which MuJoCo calls only where the import failed before.
 
-    The first pass over the data finds what the compiled one would have put there.
+    If it succeeds now, the first pass over the data finds what the compiled one would have put.
     """
 
     def init(_: int, data: int, instance: int) -> int:

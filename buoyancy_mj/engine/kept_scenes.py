@@ -28,8 +28,11 @@ def keep_scenes() -> None:
 @functools.cache
 def _mend_windows() -> None:
     """Keep a scene when its model changes, and give the next model a scene of its own."""
-    from mujoco.studio.native_viewer import NativeViewer
-
+    try:
+        from mujoco.studio.native_viewer import NativeViewer
+    except ImportError:
+        # then there is no window either
+        return
     sync_renderer, close = NativeViewer._sync_renderer, NativeViewer.close
 
     def keep_and_sync(window: Any, model: mujoco.MjModel) -> None:
