@@ -5,11 +5,13 @@ import json
 import os
 import sys
 
+import av
 import numpy as np
 import pytest
 from PIL import Image
 
 from buoyancy_mj import (
+    BuoyancyWarning,
     DrawingError,
     JonswapSea,
     LevelOscillation,
@@ -30,8 +32,6 @@ from buoyancy_mj.drawing.hud import Hud
 from buoyancy_mj.drawing.pictures import Pictures
 from buoyancy_mj.drawing.sea_state import describe_sea
 from buoyancy_mj.scenes import catalog
-
-av = pytest.importorskip("av")
 
 SIZE = (160, 90)
 WHITE = 255
@@ -325,6 +325,12 @@ def test_a_full_disk_ends_a_film_that_plays(tmp_path, monkeypatch):
     assert 5 < length(partial)[0] <= film.count
 
 
+def test_a_picture_is_a_png(tmp_path):
+    with pytest.raises(RecordingError) as caught:
+        Still(Shades(), tmp_path / "a.jpg")
+    assert str(caught.value) == f"the picture is '{tmp_path}/a.jpg'; its name ends in .png"
+
+
 def test_the_last_frame_is_the_picture_where_no_time_is_given(tmp_path):
     sim, shades = simulation("duration=0.3"), Shades()
     still = Still(shades, tmp_path / "a.png")
@@ -393,9 +399,11 @@ def test_unknown_renderers_and_sizes_are_refused():
         (["--video", "a.mp4", "--size", "big"],
          "--size is 'big'; write WIDTHxHEIGHT in pixels, as in 1280x720"),
         (["--at", "1"], "--at is given without --screenshot; give both"),
+        (["--fps", "30"], "--fps is given without --video; give both"),
+        (["--no-hud"], "--no-hud is given without --video and --screenshot; give one of them"),
         (["--screenshot", "a.png", "--at", "30"],
          "--at is 30, and the scene lasts from 0 to 8 s; take a time in it"),
-        (["--screenshot", "a.jpg"], "the picture is 'a.jpg'; its name ends in .png"),
+        (["--screenshot", "a.jpg"], "--screenshot is 'a.jpg'; a picture's name ends in .png"),
     ],
 )  # fmt: skip
 def test_flags_that_make_no_sense_are_refused(arguments, message, tmp_path, monkeypatch, capsys):
@@ -404,6 +412,18 @@ def test_flags_that_make_no_sense_are_refused(arguments, message, tmp_path, monk
         app(["run", "auv_drop_still", "--no-record", *arguments])
     assert capsys.readouterr().err == f"error: {message}\n"
     assert os.listdir(tmp_path) == []
+
+
+def test_without_vulkan_the_classic_renderer_draws_and_says_why(monkeypatch):
+    try:
+        open_gl()
+    except DrawingError as error:
+        pytest.skip(str(error))
+    monkeypatch.setattr(graphics, "count_devices", lambda: 0)
+    sim = simulation()
+    with pytest.warns(BuoyancyWarning, match="^the classic renderer draws: Filament draws through"):
+        pictures = Pictures(sim, size=SIZE, has_hud=False)
+    assert pictures.draw(sim.frame()).std() > 10.0
 
 
 def test_without_graphics_both_renderers_say_what_to_install(monkeypatch):

@@ -24,20 +24,31 @@ class FilmFlags:
     """Write a picture of the run into this .png file."""
     at: float | None = None
     """Time of that picture instead of the end [s]."""
-    camera: str = "follow"
-    """Film by this camera: follow, orbit, under, or the name of one in the model."""
-    size: str = "1280x720"
-    """Width and height of film and picture in pixels."""
-    fps: int = 30
-    """Pictures in a second of the film."""
+    camera: str | None = None
+    """See by this camera instead of follow: orbit, under, or the name of one in the model."""
+    size: str | None = None
+    """Width and height of film and picture in pixels instead of 1280x720."""
+    fps: int | None = None
+    """Pictures in a second of the film instead of 30."""
     renderer: str | None = None
     """Draw with filament or classic instead of what works best here."""
     no_hud: Annotated[bool, typer.Option("--no-hud")] = False
     """Leave out the time, the sea and the scale that stand over pictures."""
 
     def __post_init__(self) -> None:
+        if self.screenshot is not None and self.screenshot.suffix != ".png":
+            raise SceneError(f"--screenshot is '{self.screenshot}'; a picture's name ends in .png")
         if self.at is not None and self.screenshot is None:
             raise SceneError("--at is given without --screenshot; give both")
+        if self.fps is not None and self.video is None:
+            raise SceneError("--fps is given without --video; give both")
+        if self.video is None and self.screenshot is None:
+            for name in ("camera", "size", "renderer", "no_hud"):
+                if getattr(self, name) not in (None, False):
+                    raise SceneError(
+                        f"--{name.replace('_', '-')} is given without --video and --screenshot; "
+                        "give one of them"
+                    )
 
     def open(self, simulation: Simulation) -> "tuple[Film | None, Still | None]":
         """Open what was asked for.
@@ -49,8 +60,9 @@ class FilmFlags:
         """
         if self.video is None and self.screenshot is None:
             return None, None
-        from buoyancy_mj.drawing.film import Film, Still
-        from buoyancy_mj.drawing.pictures import Pictures
+        from buoyancy_mj.drawing.cameras import FOLLOW
+        from buoyancy_mj.drawing.film import FPS, Film, Still
+        from buoyancy_mj.drawing.pictures import SIZE, Pictures
 
         duration = simulation.scene.duration
         if self.at is not None and not 0.0 <= self.at <= duration:
@@ -60,13 +72,17 @@ class FilmFlags:
             )
         pictures = Pictures(
             simulation,
-            camera=self.camera,
-            size=read_size(self.size),
+            camera=FOLLOW if self.camera is None else self.camera,
+            size=SIZE if self.size is None else read_size(self.size),
             renderer=self.renderer,
             has_hud=not self.no_hud,
         )
-        still = None if self.screenshot is None else Still(pictures, self.screenshot, self.at)
-        film = None if self.video is None else Film(simulation, pictures, self.video, self.fps)
+        still = film = None
+        if self.screenshot is not None:
+            still = Still(pictures, self.screenshot, self.at)
+        if self.video is not None:
+            fps = FPS if self.fps is None else self.fps
+            film = Film(simulation, pictures, self.video, fps)
         return film, still
 
 

@@ -14,6 +14,8 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.values import read_whole_number
 
+FPS = 30
+"""Pictures in a second, if not told otherwise."""
 RATES = (1, 240)
 """Least and most pictures in a second of a film."""
 
@@ -35,7 +37,7 @@ class Film:
             made.
     """
 
-    def __init__(self, run: Run, pictures: Pictures, path: Path, fps: int = 30) -> None:
+    def __init__(self, run: Run, pictures: Pictures, path: Path, fps: int = FPS) -> None:
         self._fps = read_whole_number(RecordingError, "fps", fps, *RATES)
         self._pictures = pictures
         self._begin: float | None = None

@@ -71,7 +71,7 @@ class FilmFile:
         try:
             self._keep(mark)
         except BaseException:
-            self._file.discard()
+            self.discard()
             raise
 
     @property
@@ -121,6 +121,12 @@ class FilmFile:
     def discard(self) -> None:
         """Remove the file of a film that never began."""
         self._file.discard()
+        self._release()
+
+    def _release(self) -> None:
+        """Free the encoder of a file that takes no more; Python would do so in any order."""
+        with contextlib.suppress(OSError, av.FFmpegError):
+            self._container.close()
 
     def _write(self, packets: list[Any]) -> None:
         """Write what the encoder has finished."""
@@ -135,6 +141,7 @@ class FilmFile:
             yield
         except OSError as error:
             self._file.close()
+            self._release()
             raise RecordingError(
                 f"the film ends after {self.count / self._fps:.2f} s: {error.strerror or error}; "
                 f"what there is plays, '{self._file.partial}'; make room, and the same command "
@@ -170,8 +177,9 @@ class _Writer:
         self._file = file
 
     def write(self, piece: bytes) -> int:
-        """Append a piece."""
-        self._file.append(piece)
+        """Append a piece, if the file takes more."""
+        if not self._file.closed:
+            self._file.append(piece)
         return len(piece)
 
 

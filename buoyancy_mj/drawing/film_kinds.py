@@ -108,7 +108,7 @@ def _read_pictures(path: Path) -> Iterator[Image.Image]:
 
 KINDS = {
     ".mp4": Kind("libx264", "yuv420p", "18", _make_mp4),
-    ".gif": Kind("libx264rgb", "rgb24", "0", _make_gif),
-    ".webp": Kind("libx264rgb", "rgb24", "0", _make_webp),
+    ".gif": Kind("libx264rgb", "rgb24", "10", _make_gif),
+    ".webp": Kind("libx264rgb", "rgb24", "10", _make_webp),
 }
 """Kinds of films by the ends of their names."""

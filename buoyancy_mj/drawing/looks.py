@@ -57,11 +57,11 @@ class Look:
     # under water
     deep: Colour = (0.02, 0.20, 0.28)
     """What one sees through the surface where nothing is under it."""
-    haze: Colour = (0.05, 0.38, 0.46)
+    haze: Colour = (0.06, 0.44, 0.52)
     """The water in the distance."""
     bright: Colour = (0.60, 0.90, 0.92)
     """The water overhead."""
-    dark: Colour = (0.06, 0.26, 0.34)
+    dark: Colour = (0.05, 0.30, 0.38)
     """The water underfoot."""
     skylight_below: float = 28_000.0
     """Light from all around [lx]; more than reaches there, as a diver's eye would have it."""
@@ -73,8 +73,6 @@ class Look:
     """Light of the sun under water."""
     visibility: float = 40.0
     """Distance at which the haze hides all but a twentieth [m]."""
-    floor: Colour = (0.55, 0.53, 0.42)
-    """Sand of the sea's floor."""
 
 
 DAYLIGHT = Look()

@@ -1,5 +1,6 @@
 """`Pictures`: what a camera sees of a run, frame by frame."""
 
+import dataclasses
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 MISSING = "{} needs {}, which is not installed: pip install 'buoyancy_mj[video]'"
 """The message for a library that the extra `video` brings."""
 
+SIZE = (1280, 720)
+"""Width and height of a picture [pixels], if not told otherwise."""
 SIZES = (16, 8192)
 """Least and greatest width and height [pixels]."""
 
@@ -35,7 +38,8 @@ class Pictures:
         size: width and height [pixels].
         renderer: 'filament' or 'classic'; None for Filament where it can draw.
         has_hud: whether time, sea and scale are written over them.
-        look: colours and brightness of sea and sky.
+        look: colours and brightness of sea and sky. Its sun turns with the first vehicle, so that
+            it lights what the camera sees.
 
     Raises:
         DrawingError: no such camera, renderer or size, or nothing can draw here.
@@ -47,7 +51,7 @@ class Pictures:
         run: Run,
         *,
         camera: str = FOLLOW,
-        size: tuple[int, int] = (1280, 720),
+        size: tuple[int, int] = SIZE,
         renderer: str | None = None,
         has_hud: bool = True,
         look: Look = DAYLIGHT,
@@ -63,6 +67,7 @@ class Pictures:
         aspect = size[0] / size[1]
         self._camera = find_camera(camera, run.model, self._subject, water, aspect)
         radius = max(self._subject.measure(start))
+        look = dataclasses.replace(look, sun_azimuth=look.sun_azimuth + self._subject.heading)
         self._frames = open_frames(renderer, run.model, water, radius, size, look)
         self._hud: Hud | None = None
         if has_hud:

@@ -1,5 +1,6 @@
 """`open_frames`: the renderer that draws here."""
 
+import warnings
 from typing import Protocol
 
 import mujoco
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.looks import Look
 from buoyancy_mj.drawing.shots import Shot
-from buoyancy_mj.errors import DrawingError, choices
+from buoyancy_mj.errors import BuoyancyWarning, DrawingError, choices
 from buoyancy_mj.sea.water import Water
 
 FILAMENT, CLASSIC = "filament", "classic"
@@ -40,21 +41,26 @@ def open_frames(
 ) -> Frames:
     """A renderer by its name; None for Filament where it can draw, else the classic one.
 
+    Warns:
+        BuoyancyWarning: the classic one draws, and why.
+
     Raises:
         DrawingError: there is none of that name, or it cannot draw here.
     """
-    if name not in (FILAMENT, CLASSIC, None):
-        raise DrawingError(f"there is no renderer '{name}'; {choices(name, (FILAMENT, CLASSIC))}")
-    reasons = []
-    for one, open_one in ((FILAMENT, _open_filament), (CLASSIC, _open_classic)):
-        if name in (one, None):
-            try:
-                return open_one(model, water, radius, size, look)
-            except DrawingError as error:
-                reasons.append(error)
+    if name is not None and name not in _OPENERS:
+        raise DrawingError(f"there is no renderer '{name}'; {choices(name, _OPENERS)}")
     if name is not None:
-        raise reasons[0]
-    raise DrawingError(f"nothing can draw here: {'; '.join(map(str, reasons))}")
+        return _OPENERS[name](model, water, radius, size, look)
+    try:
+        return _open_filament(model, water, radius, size, look)
+    except DrawingError as error:
+        reason = error
+    try:
+        frames = _open_classic(model, water, radius, size, look)
+    except DrawingError as error:
+        raise DrawingError(f"nothing can draw here: {reason}; {error}") from error
+    warnings.warn(f"the classic renderer draws: {reason}", BuoyancyWarning, stacklevel=3)
+    return frames
 
 
 def _open_filament(
@@ -78,3 +84,6 @@ def _open_classic(
     from buoyancy_mj.drawing.classic.frames import ClassicFrames
 
     return ClassicFrames(model, water, radius, size, look)
+
+
+_OPENERS = {FILAMENT: _open_filament, CLASSIC: _open_classic}

@@ -55,7 +55,7 @@ def view_simulation(simulation: Simulation) -> None:
                 middle = find_middle(vehicle.centre_of_mass(data) for vehicle in vehicles)
                 scene, eye = viewer.user_scn, Eye(_find_eye(viewer.cam))
                 scene.ngeom = 0
-                add_sea(scene, water, middle, data.time, radius=size, eye=eye)
+                add_sea(scene, water, middle, data.time, radius=0.5 * size, eye=eye)
             viewer.sync()
             time.sleep(max(0.0, FRAME_TIME - (time.perf_counter() - started)))
 
