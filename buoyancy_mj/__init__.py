@@ -133,6 +133,8 @@ def __getattr__(name: str) -> Any:
         return version(__name__)
     if name not in _HOMES:
         raise AttributeError(f"module '{__name__}' has no attribute '{name}'")
+    # whoever uses the package has the plugins whole, and is told where kernels are kept
+    _importlib.import_module("buoyancy_mj.vehicle.plugins")
     value = getattr(_importlib.import_module(_HOMES[name]), name)
     if isinstance(value, type) and _dataclasses.is_dataclass(value):
         _show_fields(value)
@@ -146,4 +148,4 @@ def __dir__() -> list[str]:
 
 # MuJoCo knows the plugins of models from now on; a command of ours imports them when it begins
 if not _launch.IS_COMMAND_LINE:
-    _importlib.import_module("buoyancy_mj.vehicle.plugins")
+    _importlib.import_module("buoyancy_mj.engine.announcing").announce()

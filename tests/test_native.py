@@ -13,7 +13,7 @@ from mujoco import batch
 
 from buoyancy_mj import Buoyancy, Damping, EngineError, ModelError, RegularWave, Silhouette, Water
 from buoyancy_mj.engine import compiled as compiled_water
-from buoyancy_mj.engine import layout
+from buoyancy_mj.engine import layout, library
 from buoyancy_mj.kernels import wrenches
 from buoyancy_mj.kernels.arrays import gather
 from buoyancy_mj.kernels.entries import passive
@@ -413,7 +413,7 @@ def test_fields_and_functions_that_the_engine_lacks_are_told():
     ):
         layout.offset("mjData.wetness")
     with pytest.raises(EngineError, match=r"has no function mj_swim"):
-        layout.symbol("mj_swim")
+        library.symbol("mj_swim")
 
 
 def test_where_passive_forces_are_skipped_it_is_lent_as_a_control_callback():

@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
-from buoyancy_mj import submerge
+from buoyancy_mj import TriMesh, submerge
 from buoyancy_mj.meshes import shapes
 
 
@@ -61,3 +63,32 @@ def test_a_standing_capsule_and_cylinder_have_their_volume_to_a_thousandth(draft
     assert submerge(shapes.cylinder(0.2, 0.3), (0, 0, 0.3 - draft)).volume == pytest.approx(
         np.pi * 0.04 * draft, rel=1e-12
     )
+
+
+@pytest.mark.parametrize("half_length", [0.02, 0.1, 0.4, 2.0])
+def test_a_capsule_of_600_triangles_is_as_right_as_one_of_100_times_as_many(half_length):
+    # trimesh's lies within the true shape, and is widened to its volume
+    capsule, longest = shapes.capsule(0.2, half_length), 2.0 * half_length + 0.4
+    assert len(capsule.faces) <= 600
+    volume = 2.0 * np.pi * 0.04 * half_length + 4.0 / 3.0 * np.pi * 0.008
+    assert capsule.volume == pytest.approx(volume, rel=1e-12)
+    fine = trimesh.creation.capsule(2.0 * half_length, 0.2, count=[192, 192])
+    vertices = (fine.vertices - fine.bounds.mean(axis=0)) * np.cbrt(volume / fine.volume)
+    fine = TriMesh(vertices, fine.faces)
+
+    draw = np.random.default_rng(3)
+    for turn in Rotation.random(20, random_state=3).as_matrix():
+        height = draw.uniform(-0.9, 0.9) * (capsule.vertices @ turn.T)[:, 2].max()
+        got, true = (submerge(mesh, (0.0, 0.0, height), turn) for mesh in (capsule, fine))
+        assert got.volume == pytest.approx(true.volume, abs=5e-4 * volume)
+        assert got.volume == pytest.approx(true.volume, abs=5e-4 * longest * true.waterplane_area)
+        assert got.centroid == pytest.approx(true.centroid, abs=1e-3 * longest)
+        assert got.waterplane_area == pytest.approx(true.waterplane_area, rel=9e-3)
+
+
+def test_a_capsule_is_as_symmetric_as_a_square_prism():
+    capsule = shapes.capsule(0.2, 0.3)
+    corners = {tuple(c) for c in capsule.vertices.round(12) + 0.0}
+    for mirror in ([-1, 1, 1], [1, -1, 1], [1, 1, -1]):
+        assert {tuple(c) for c in (capsule.vertices * mirror).round(12) + 0.0} == corners
+    assert {tuple(c) for c in capsule.vertices[:, [1, 0, 2]].round(12) + 0.0} == corners

@@ -66,7 +66,7 @@ def run(
     path = catalog.scene_path(scene)
     settings = [*flags.overrides(), *selection.overrides()]
     with err.status(
-        "preparing (the first run after an installation compiles, which takes some seconds)"
+        "preparing (the first run after an installation compiles, which takes a minute or two)"
     ):
         simulation = Simulation(read_scene(path, settings), through=through, trust=flags.trust)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"

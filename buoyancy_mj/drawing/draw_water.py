@@ -70,9 +70,11 @@ def draw_water(
         ModelError: no water acts on the model, or several do and none is named.
 
     Example:
-        >>> renderer.update_scene(data, camera)
-        >>> draw_water(renderer, data)
-        >>> pixels = renderer.render()
+        >>> mujoco.mj_forward(model, data)
+        >>> scene = mujoco.MjvScene(model, maxgeom=10_000)  # that of a renderer is renderer.scene
+        >>> draw_water(scene, data, eye=(3.0, 0.0, 1.0), buoyancy=Buoyancy(model, Water()))
+        >>> scene.ngeom > 1000
+        True
     """
     place = None if eye is None else read_array(DrawingError, "eye", eye, (3,))
     target = _find_scene(renderer, scene)

@@ -12,7 +12,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine import crews, layout
+from buoyancy_mj.engine import crews, layout, library
 from buoyancy_mj.engine.c_functions import PythonFunction, encode_text
 from buoyancy_mj.engine.load_model import LoadModel
 from buoyancy_mj.errors import EngineError
@@ -90,10 +90,10 @@ class CompiledWater:
             submerge=self._submerge.address,
             augment=compile_kernel(loads.augment).address if load_model.augments else 0,
             inertia=compile_kernel(loads.add_inertia).address if load_model.augments else 0,
-            error=layout.symbol("mju_error"),
+            error=library.symbol("mju_error"),
             gravity_text=ctypes.addressof(self._text),
-            factor=layout.symbol("mj_factorM"),
-            project=layout.symbol("mj_projectConstraint"),
+            factor=library.symbol("mj_factorM"),
+            project=library.symbol("mj_projectConstraint"),
             crew=crews.crew().table.address if threads > 1 else 0,
             threads=threads,
         )
@@ -230,4 +230,4 @@ def require_known_layout() -> None:
             "use buoyancy.installed(native=False)"
         )
     layout.verify(PATHS)
-    layout.symbol("mju_error")
+    library.symbol("mju_error")

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import mujoco
 
+from buoyancy_mj.engine.announcing import load_plugins
 from buoyancy_mj.engine.model_memory import copy_model, read_texts
 from buoyancy_mj.kernels.vehicle.devices import Device
 
@@ -56,12 +57,16 @@ _plans = collections.OrderedDict()
 
 def device_instances(model: mujoco.MjModel) -> list[int]:
     """Indices of the plugin instances of a model that are thrusters, tanks or sensors of ours."""
-    return [i for i in range(model.nplugin) if int(model.plugin[i]) in KINDS]
+    return [i for i in range(model.nplugin) if kind_of(model, i) is not None]
 
 
 def kind_of(model: mujoco.MjModel, instance: int) -> DeviceKind | None:
     """The kind of a plugin instance of a model; None if it is not one of ours."""
-    return KINDS.get(int(model.plugin[instance])) if instance >= 0 else None
+    if instance < 0:
+        return None
+    # a model of a binary file may have a device before MuJoCo has asked for any
+    load_plugins()
+    return KINDS.get(int(model.plugin[instance]))
 
 
 def find_plan(key: bytes, model: int, instance: int) -> tuple[mujoco.MjModel, Plan]:

@@ -10,13 +10,13 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from buoyancy_mj.engine import compiled, layout, presence
+from buoyancy_mj.engine import compiled, layout, library, presence
+from buoyancy_mj.engine.announced import Announced
+from buoyancy_mj.engine.announcing import put_hooks
 from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.device_kinds import KINDS, DeviceKind
 from buoyancy_mj.engine.devices import resolve_device
 from buoyancy_mj.engine.late_hooks import make_hook
-from buoyancy_mj.engine.plugin_struct import register_plugin
-from buoyancy_mj.hulls.plugins import note_plugin
 from buoyancy_mj.kernels.entries import device_hooks
 from buoyancy_mj.kernels.entries.closures import Closure
 from buoyancy_mj.kernels.entries.views import Table
@@ -34,9 +34,15 @@ def register_kind(kind: DeviceKind) -> None:
     functions["reset"] = hooks.count(device_hooks.reset, kind.states)
     if kind.numbers:
         functions["nsensordata"] = hooks.count(device_hooks.count_readings, kind.numbers)
-    slot = register_plugin(kind.plugin, kind.keys, int(kind.capability), int(kind.stage), functions)
-    KINDS[slot] = kind
-    note_plugin(kind.plugin, slot, kind.keys)
+    plugin = Announced(
+        kind.plugin,
+        kind.keys,
+        int(kind.capability),
+        int(kind.stage),
+        kind.states,
+        kind.numbers,
+    )
+    KINDS[put_hooks(plugin, functions)] = kind
 
 
 class _Hooks:
@@ -53,7 +59,7 @@ class _Hooks:
                 layout.offset("mjData.plugin_data"),
                 self._resolve.address,
                 presence.CHANGES,
-                layout.symbol("mju_error"),
+                library.symbol("mju_error"),
             )
         )
         self._closures = [make_hook(hook, self._context.address) for hook in device_hooks.BOUND]

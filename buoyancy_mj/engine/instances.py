@@ -6,8 +6,9 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine import layout
+from buoyancy_mj.engine import library
 from buoyancy_mj.engine.model_memory import read_first_name
+from buoyancy_mj.engine.plugin_struct import find_plugin
 from buoyancy_mj.errors import ModelError, choices
 from buoyancy_mj.hulls.bodies import find_moving_bodies
 from buoyancy_mj.hulls.names import body_name
@@ -19,17 +20,15 @@ PLUGIN = "buoyancy_mj.water"
 
 def plugin_instances(model: mujoco.MjModel) -> list[int]:
     """Indices of the plugin instances by which a model brings its own water."""
-    slot = ctypes.c_int(-1)
-    find = layout.function("mjp_getPlugin", ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p)
-    find(PLUGIN.encode(), ctypes.addressof(slot))
-    if slot.value < 0:
+    slot = find_plugin(PLUGIN)
+    if slot < 0:
         return []
-    return [i for i in range(model.nplugin) if model.plugin[i] == slot.value]
+    return [i for i in range(model.nplugin) if model.plugin[i] == slot]
 
 
 def plugin_name(model: mujoco.MjModel, instance: int) -> str:
     """The name of the plugin that an instance is of, ours or another's."""
-    find = layout.function("mjp_getPluginAtSlot", ctypes.POINTER(ctypes.c_char_p), ctypes.c_int)
+    find = library.function("mjp_getPluginAtSlot", ctypes.POINTER(ctypes.c_char_p), ctypes.c_int)
     # the name is the first field of an mjpPlugin
     return bytes(find(int(model.plugin[instance]))[0]).decode()
 

@@ -7,7 +7,7 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
-from buoyancy_mj.engine import layout
+from buoyancy_mj.engine import library
 from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.kernels.entries.closures import Closure, Late, compile_kernel
 
@@ -38,4 +38,4 @@ _compiler = functools.cache(lambda: PythonFunction(_compile))
 
 
 def _links() -> Late:
-    return Late(_compiler().address, layout.symbol("mju_error"))
+    return Late(_compiler().address, library.symbol("mju_error"))

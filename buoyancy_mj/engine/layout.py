@@ -1,22 +1,19 @@
-"""Where MuJoCo keeps its numbers: byte offsets in its structs, and functions of its library."""
+"""Where MuJoCo keeps its numbers: byte offsets in its structs."""
 
 import contextlib
 import ctypes
 import functools
 from collections.abc import Iterator, Sequence
-from pathlib import Path
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import mujoco
 import numpy as np
 from mujoco.introspect import ast_nodes, structs
 
+from buoyancy_mj.engine.library import MEND
 from buoyancy_mj.errors import EngineError
 
-_MEND = (
-    "the water then acts through Python alone: use buoyancy.installed(native=False), "
-    "or another version of MuJoCo"
-)
 _TYPES: dict[str, Any] = {
     "mjtNum": ctypes.c_double,
     "double": ctypes.c_double,
@@ -59,7 +56,7 @@ def offset(path: str) -> int:
     kind, total = _struct(name), 0
     for part in parts:
         if not hasattr(kind, part):
-            raise EngineError(f"MuJoCo {mujoco.__version__} has no {path}; {_MEND}")
+            raise EngineError(f"MuJoCo {mujoco.__version__} has no {path}; {MEND}")
         total += getattr(kind, part).offset
         kind = dict(kind._fields_).get(part)
     return total
@@ -90,40 +87,15 @@ def word(address: int) -> int:
     return ctypes.c_int64.from_address(address).value
 
 
-@functools.cache
-def function(name: str, result: Any, *arguments: Any) -> Any:
-    """A function of MuJoCo's library, for Python to call.
-
-    Raises:
-        EngineError: it has no such function.
-    """
-    return ctypes.CFUNCTYPE(result, *arguments)(symbol(name))
-
-
-def symbol(name: str) -> int:
-    """Address of a function of MuJoCo's library.
-
-    Raises:
-        EngineError: it has no such function.
-    """
-    try:
-        function = getattr(_library(), name)
-    except AttributeError:
-        raise EngineError(f"MuJoCo {mujoco.__version__} has no function {name}; {_MEND}") from None
-    return ctypes.cast(function, ctypes.c_void_p).value or 0
-
-
 def verify(paths: Sequence[str]) -> None:
     """Compare offsets with where a live model and its data really hold their arrays and numbers.
 
     Raises:
         EngineError: they differ, so that nothing compiled here may touch this MuJoCo.
     """
-    with _no_callbacks():
-        model = mujoco.MjModel.from_xml_string(_PROBE)
-        data = mujoco.MjData(model)
-        mujoco.mj_forward(model, data)
-    data.time = 0.1875
+    # MuJoCo may be compiling a model in this thread, and keeps track of one in each thread only
+    with _no_callbacks(), ThreadPoolExecutor(1) as apart:
+        model, data = apart.submit(_make_probe).result()
     for path in paths:
         name, *parts = path.split(".")
         owner = model if name == "mjModel" else data
@@ -143,8 +115,17 @@ def verify(paths: Sequence[str]) -> None:
         if not right:
             raise EngineError(
                 f"MuJoCo {mujoco.__version__} does not keep {path} at byte {offset(path)}, "
-                f"as it says itself; {_MEND}"
+                f"as it says itself; {MEND}"
             )
+
+
+def _make_probe() -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """The small model and its data, in which numbers differ from one another."""
+    model = mujoco.MjModel.from_xml_string(_PROBE)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    data.time = 0.1875
+    return model, data
 
 
 @functools.cache
@@ -166,20 +147,6 @@ def _no_callbacks() -> Iterator[None]:
     finally:
         for name, callback in slots.items():
             getattr(mujoco, f"set_mjcb_{name}")(callback)
-
-
-@functools.cache
-def _library() -> ctypes.CDLL:
-    """MuJoCo's library, the one that its Python package has loaded."""
-    folder = Path(mujoco.__file__).parent
-    found = [
-        path
-        for pattern in ("libmujoco*.so*", "libmujoco*.dylib", "mujoco.dll")
-        for path in folder.glob(pattern)
-    ]
-    if not found:
-        raise EngineError(f"there is no MuJoCo library in '{folder}'; {_MEND}")
-    return ctypes.CDLL(str(found[0]))
 
 
 def _field(path: str) -> Any:
@@ -219,7 +186,6 @@ def _type(declared: Any, owner: str) -> Any:
         return _struct(name)
     if name not in _TYPES:
         raise EngineError(
-            f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; "
-            f"{_MEND}"
+            f"MuJoCo {mujoco.__version__} has a field of the unknown type {name} in {owner}; {MEND}"
         )
     return _TYPES[name]

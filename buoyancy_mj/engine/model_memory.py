@@ -7,7 +7,7 @@ from typing import Any
 
 import mujoco
 
-from buoyancy_mj.engine import layout
+from buoyancy_mj.engine import layout, library
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.settings.config import INSTANCE, KEYS
 
@@ -107,20 +107,20 @@ def copy_model(model: int) -> mujoco.MjModel:
     """
     # a batch's models refer to the meshes of another
     error = ctypes.create_string_buffer(1000)
-    embed = layout.function("mj_embedAssets", _WORD, _WORD, _WORD, _INT)
+    embed = library.function("mj_embedAssets", _WORD, _WORD, _WORD, _INT)
     whole = embed(model, ctypes.addressof(error), len(error))
     if not whole:
         raise ModelError(f"MuJoCo cannot copy the model to find its water: {error.value.decode()}")
 
     # into a buffer as a binary file, and back
-    buffer = ctypes.create_string_buffer(layout.function("mj_sizeModel", _WORD, _WORD)(whole))
-    save = layout.function("mj_saveModel", None, *[_WORD] * 4)
+    buffer = ctypes.create_string_buffer(library.function("mj_sizeModel", _WORD, _WORD)(whole))
+    save = library.function("mj_saveModel", None, *[_WORD] * 4)
     save(whole, 0, ctypes.addressof(buffer), len(buffer))
-    layout.function("mj_deleteModel", None, _WORD)(whole)
+    library.function("mj_deleteModel", None, _WORD)(whole)
     return mujoco.MjModel.from_binary_path("model.mjb", {"model.mjb": buffer.raw})
 
 
 def _read_key(model: int, instance: int, key: str) -> str:
     """The text of a key of a plugin instance; '' if it has none."""
-    read = layout.function("mj_getPluginConfig", ctypes.c_char_p, _WORD, _INT, ctypes.c_char_p)
+    read = library.function("mj_getPluginConfig", ctypes.c_char_p, _WORD, _INT, ctypes.c_char_p)
     return (read(model, instance, key.encode()) or b"").decode()

@@ -1,7 +1,7 @@
 """Pickles of models with water or devices, and of their data, which bring this package along.
 
-MuJoCo's own pickle of a model names its plugins by number, and a process that has not imported this
-package ends when it makes data of it. Its pickle of data holds addresses of what plugins keep for
+MuJoCo's own pickle of a model names its plugins by number, and a process that does not know them
+ends when it makes data of it. Its pickle of data holds addresses of what plugins keep for
 them, which were those of the process that wrote it.
 """
 
@@ -33,7 +33,7 @@ def _reduce(value: Any, model: mujoco.MjModel) -> tuple[Any, ...]:
 
 
 def _restore(kind: Any, state: Any) -> Any:
-    """A model or data from a pickle; importing this module has registered the plugin."""
+    """A model or data from a pickle; importing this module has announced the plugins."""
     value = kind.__new__(kind)
     value.__setstate__(state)
     if isinstance(value, mujoco.MjData):

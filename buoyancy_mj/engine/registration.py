@@ -5,12 +5,13 @@ import functools
 
 import mujoco
 
-from buoyancy_mj.engine import compiled, layout
+from buoyancy_mj.engine import compiled, layout, library
+from buoyancy_mj.engine.announced import Announced
+from buoyancy_mj.engine.announcing import put_hooks
 from buoyancy_mj.engine.c_functions import PythonFunction
 from buoyancy_mj.engine.instances import PLUGIN
 from buoyancy_mj.engine.late_hooks import make_hook
 from buoyancy_mj.engine.model_memory import MODEL_ARRAYS
-from buoyancy_mj.engine.plugin_struct import register_plugin
 from buoyancy_mj.engine.waters import LOCK, find_water, is_making_water
 from buoyancy_mj.kernels.entries import plugin_hooks
 from buoyancy_mj.kernels.entries.views import Table
@@ -62,7 +63,7 @@ class _Engine:
             plugin_hooks.Context(
                 layout.offset("mjData.plugin_data"),
                 self._resolve.address,
-                layout.symbol("mju_error"),
+                library.symbol("mju_error"),
             )
         )
         bound = {"init", "destroy", "copy", "compute"}
@@ -72,11 +73,13 @@ class _Engine:
             )
             for hook in plugin_hooks.HOOKS
         }
-        register_plugin(
-            PLUGIN,
-            (*KEYS, INSTANCE),
-            int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
-            int(mujoco.mjtStage.mjSTAGE_VEL),
+        put_hooks(
+            Announced(
+                PLUGIN,
+                (*KEYS, INSTANCE),
+                int(mujoco.mjtPluginCapabilityBit.mjPLUGIN_PASSIVE),
+                int(mujoco.mjtStage.mjSTAGE_VEL),
+            ),
             {name: closure.address for name, closure in self._functions.items()},
         )
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(self))

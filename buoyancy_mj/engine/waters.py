@@ -19,6 +19,7 @@ from buoyancy_mj.engine.instances import (
     find_instance_scope,
     instance_name,
 )
+from buoyancy_mj.engine.kept_scenes import keep_scenes
 from buoyancy_mj.engine.model_memory import copy_model, fingerprint_model, read_config
 from buoyancy_mj.errors import ModelError
 from buoyancy_mj.hulls.selection import rename_patterns
@@ -59,6 +60,7 @@ def find_water(model: int, instance: int) -> Buoyancy:
         key = fingerprint_model(model, instance)
         if key not in _waters:
             _drop_unused()
+            keep_scenes()
             with _making_water():
                 _waters[key] = _make_water(copy_model(model), instance)
         _waters.move_to_end(key)

@@ -34,7 +34,7 @@ K, BOTTOM, SQUARE, TIDE, TAYLOR = range(5)
 """Rows of `Blocks.waves`: wave number [rad/m]; `still_water.seabed`; k tanh(k h) a^2 / 2; the
 amplitude of what raises all the water, else 0; and from TAYLOR on what the cosine or the sine of
 the phase adds to each coefficient of a layer."""
-SAMPLES = 112
+SAMPLES = 72
 """Points at which the head in a block is found."""
 ALONG, DOWN = 16, 4
 """Blocks along a side of the store, and along its height."""

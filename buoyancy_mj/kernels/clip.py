@@ -52,8 +52,10 @@ from buoyancy_mj.kernels.leaves import (
     sum_triangle,
     vertices_of,
 )
+from buoyancy_mj.kernels.strips import waterplane_moments
 from buoyancy_mj.kernels.surface import swing
 from buoyancy_mj.kernels.vectors import difference, place, rotate, triple
+from buoyancy_mj.kernels.wet_nodes import integrate_node, sum_nodes
 
 VOLUME, CX, CY, CZ, WETTED_AREA, WATERPLANE_AREA, WATERPLANE_X, WATERPLANE_Y, COLUMNS = range(9)
 """Columns of one row of results, and how many: volume, its centroid (3), areas, and the centroid of
@@ -215,17 +217,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 waiting += 1
                 if waiting == MOST:
                     sums, extra = _take(
-                        cuts,
-                        waiting,
-                        sums,
-                        extra,
-                        wavy,
-                        plane,
-                        rest,
-                        tiles,
-                        store,
-                        near,
-                    )
+                        cuts, waiting, sums, extra, wavy, plane, rest, tiles, store, near
+                    )  # fmt: skip
                     waiting = none
 
             # those that are to be halved, until what is left of them is wet, dry or cut
@@ -254,8 +247,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                             waiting = none
                     top -= 1
         if mostly:
-            part = _moments_of_node(node_moments[i], middle, r, under, plane.gradient)
-            total = _sum(total, part)
+            part = integrate_node(node_moments[i], middle, r, under, plane.gradient)
+            total = sum_nodes(total, part)
         i = tree.node_after(spans, i, dry or wet)
 
     # the cuts that still wait
@@ -268,8 +261,8 @@ def _take(cuts, waiting, sums, extra, wavy, plane, rest, tiles, store, near):
     """Take the cuts that wait, into integrals over triangles, and of e over the waterplane."""
     sums = add(sums, sum_cuts(cuts, waiting))
     if wavy:
-        more = swell.waterplane_moments(cuts, waiting, plane, rest, tiles, store, near)
-        extra = _sum_four(extra, more)
+        more = waterplane_moments(cuts, waiting, plane, rest, tiles, store, near)
+        extra = extra[0] + more[0], extra[1] + more[1], extra[2] + more[2], extra[3] + more[3]
     return sums, extra
 
 
@@ -303,54 +296,3 @@ def _join(total, sums, extra, plane, r, fill):
         fill * sums.outline_x - cx * above,
         fill * sums.outline_y - cy * above,
     )
-
-
-@inlined
-def _sum_four(a, b):
-    """Four numbers and four more."""
-    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3]
-
-
-@inlined
-def _moments_of_node(m, middle, r, under, gradient):
-    """The seven integrals over a node that is wholly wet, by its moments m.
-
-    The middle of its box lies `under` the plane.
-    """
-    # contracted with the vertical
-    s = _vertical(m, tree.VECTOR, r)
-    t0, t1, t2 = _vertical(m, tree.X, r), _vertical(m, tree.Y, r), _vertical(m, tree.Z, r)
-    u00, u11, u22 = _vertical(m, tree.XX, r), _vertical(m, tree.YY, r), _vertical(m, tree.ZZ, r)
-    u01, u02, u12 = _vertical(m, tree.XY, r), _vertical(m, tree.XZ, r), _vertical(m, tree.YZ, r)
-
-    # with the depth
-    g0, g1, g2 = gradient
-    tilted = g0 * t0 + g1 * t1 + g2 * t2
-    n0 = g0 * u00 + g1 * u01 + g2 * u02
-    n1 = g0 * u01 + g1 * u11 + g2 * u12
-    n2 = g0 * u02 + g1 * u12 + g2 * u22
-    part = under * s + tilted
-    b0, b1, b2 = middle
-    return (
-        part,
-        b0 * part + under * t0 + n0,
-        b1 * part + under * t1 + n1,
-        b2 * part + under * t2 + n2,
-        under * (part + tilted) + g0 * n0 + g1 * n1 + g2 * n2,
-        s,
-        m[tree.AREA],
-    )
-
-
-@inlined
-def _vertical(m, k, r):
-    """Three numbers of a row of moments, along the world's vertical."""
-    return m[k] * r[6] + m[k + 1] * r[7] + m[k + 2] * r[8]
-
-
-@inlined
-def _sum(a, b):
-    """Seven numbers and seven more."""
-    return (
-        a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5], a[6] + b[6],
-    )  # fmt: skip

@@ -24,7 +24,7 @@ SIDE, REACH, HELD, TURNING, HEIGHT, STEEPNESS, CURVATURE, TWIST, ROUNDING = rang
 PER_SIDE, PER_REACH = 9, 10
 """Numbers of `Tiles.layout`: side of a tile [m]; half the side of the square in which its
 polynomial holds [m]; how many waves tiles hold; the wave number by which ways are divided into
-panels, see `swell.waterplane_moments` [rad/m]; sums of a, a k, a k^2 and a k^3 over all waves,
+panels, see `strips.waterplane_moments` [rad/m]; sums of a, a k, a k^2 and a k^3 over all waves,
 which bound elevation, slope, curvature and its change; what the tiles leave out of second
 derivatives [1/m]; and one over the first two [1/m]."""
 AMPLITUDE, KX, KY, OMEGA, PHASE, SHARES = range(6)

@@ -1,18 +1,24 @@
 """MuJoCo's primitive geoms as closed meshes.
 
 A faceted solid inscribed in a round one is too small. It is scaled until its volume is the true
-one, which leaves a draft or a centroid wrong by less than 0.1 % of the size at this resolution.
+one, which leaves a draft or a centroid wrong by less than 0.1 % of the longest side at this
+resolution.
 """
 
+import functools
+from typing import NamedTuple
+
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from buoyancy_mj.meshes.mesh import TriMesh
 
 SUBDIVISIONS = 4
 """Subdivisions of an icosahedron for a sphere or an ellipsoid: 5120 triangles."""
 SECTIONS = 64
-"""Facets around a cylinder or a capsule."""
+"""Facets around a cylinder."""
+ROWS = 8
+"""Rows of triangles on each end of a capsule, which has 576 of them."""
 
 
 def box(half_sizes: ArrayLike) -> TriMesh:
@@ -45,15 +51,80 @@ def cylinder(radius: float, half_length: float) -> TriMesh:
 
 def capsule(radius: float, half_length: float) -> TriMesh:
     """A capsule along z from its radius and the half length [m] of its cylindrical part."""
-    # a quarter circle in units of the radius; the poles lie on the axis exactly
-    angle = np.linspace(0.0, 0.5 * np.pi, SECTIONS // 4 + 1)
-    cap = np.column_stack([np.cos(angle), half_length / radius + np.sin(angle)])
-    cap[-1, 0] = 0.0
+    dome = _make_dome()
+    top = radius * dome.vertices + [0.0, 0.0, half_length]
+    count, number = len(top), 4 * ROWS
 
-    # the profile from pole to pole, and the volume that it must have
-    profile = np.vstack([cap[::-1] * [1.0, -1.0], cap])
-    solid = _revolve(profile, np.pi * (2.0 * half_length / radius + 4.0 / 3.0))
-    return TriMesh(solid.vertices * radius, solid.faces)
+    # the facets between the two rims
+    rim = np.arange(count - number, count)
+    after = np.roll(rim, -1)
+    low, low_after = rim + count, after + count
+    sides = [np.column_stack([low, low_after, after]), np.column_stack([low, after, rim])]
+    faces = np.vstack([dome.faces, dome.faces[:, ::-1] + count, *sides])
+    return TriMesh(np.vstack([top, top * [1.0, 1.0, -1.0]]), faces)
+
+
+class _Dome(NamedTuple):
+    """Half a ball of radius 1, above z = 0."""
+
+    vertices: NDArray[np.float64]
+    """(n, 3), the pole first, those on the rim last."""
+    faces: NDArray[np.int64]
+    """(m, 3), none of them in the plane of the rim."""
+
+
+@functools.cache
+def _make_dome() -> _Dome:
+    """Half a ball of the true volume, whose rim has the area of the circle.
+
+    Its faces are those of half an octahedron, each of them in `ROWS` rows of triangles: as
+    symmetric as a square, so that what is found for a capsule is so, too.
+    """
+    vertices, faces = [(0.0, 0.0, 1.0)], []
+    for row in range(1, ROWS + 1):
+        latitude = 0.5 * np.pi * (1.0 - row / ROWS)
+        for n in range(4 * row):
+            turn = 0.5 * np.pi * n / row
+            across = np.cos(latitude) * np.cos(turn), np.cos(latitude) * np.sin(turn)
+            vertices.append((*across, np.sin(latitude)))
+
+            # an upright triangle, and one upside down between it and the last on the same side
+            apex = n - n // row
+            faces.append([_count(row, n), _count(row, n + 1), _count(row - 1, apex)])
+            if n % row:
+                faces.append([_count(row - 1, apex - 1), _count(row, n), _count(row - 1, apex)])
+    return _Dome(_round_out(np.array(vertices), np.array(faces)), np.array(faces))
+
+
+def _count(row: int, n: int) -> int:
+    """Where the nth vertex of a row of a dome stands among all."""
+    return 1 + 2 * row * (row - 1) + n % (4 * row) if row else 0
+
+
+def _round_out(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Move the vertices of a dome outward, so that its facets are as far out as they lie within.
+
+    A flat triangle of sides a, b, c lies (a^2 + b^2 + c^2) / 24 within the unit sphere through its
+    corners in the mean over its area, but for the fourth powers of its sides.
+    """
+    corners = vertices[faces]
+    sides = corners - np.roll(corners, 1, axis=1)
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    lack = (sides**2).sum(axis=(1, 2)) / 24.0
+    around = faces.ravel()
+    weights = np.bincount(around, np.repeat(area, 3))
+    vertices *= (1.0 + np.bincount(around, np.repeat(area * lack, 3)) / weights)[:, None]
+
+    # the pole is where it was, the rim has the area of the circle, the others make up the volume
+    pole, others, rim = np.split(vertices, [1, len(vertices) - 4 * ROWS])
+    pole[:] = 0.0, 0.0, 1.0
+    angle = 0.5 * np.pi / ROWS
+    rim *= np.sqrt(angle / np.sin(angle)) / np.linalg.norm(rim, axis=1, keepdims=True)
+    rim[:, 2] = 0.0
+    for _ in range(20):
+        volume = np.linalg.det(vertices[faces]).sum() / 6.0
+        others *= np.cbrt(2.0 / 3.0 * np.pi / volume)
+    return vertices
 
 
 def _revolve(profile: ArrayLike, volume: float) -> TriMesh:

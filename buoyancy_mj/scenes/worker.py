@@ -68,9 +68,9 @@ _compiled: set[str] = set()
 def _compile_in_turn(variations: Variations, values: Values) -> None:
     """Let one process of this machine compile what a scene needs, while the others wait.
 
-    A fresh installation compiles for a minute, and on a machine of 64 cores 64 processes would do
-    so at once. A file among the temporary ones remembers the scenes that were built here, and with
-    which software.
+    A fresh installation compiles for a minute or two, and on a machine of 64 cores 64 processes
+    would do so at once. A file among the temporary ones remembers the scenes that were built here,
+    and with which software.
     """
     if variations.digest in _compiled:
         return

@@ -1,4 +1,4 @@
-"""All plugins of the engine: whoever imports this has registered them with MuJoCo.
+"""All plugins of the engine: whoever imports this has put their compiled hooks into MuJoCo.
 
 It also tells of the place where compiled kernels are kept, if that is an unusual one.
 """
@@ -15,6 +15,7 @@ from buoyancy_mj.vehicle.sensors import hydrophone as hydrophone
 from buoyancy_mj.vehicle.sensors import pressure as pressure
 from buoyancy_mj.vehicle.sensors import surface as surface
 from buoyancy_mj.vehicle.sensors import velocities as velocities
+from buoyancy_mj.vehicle.thrusters import adding as adding
 
 for _notice in NOTICES:
     warnings.warn(_notice, BuoyancyWarning, stacklevel=2)

@@ -14,7 +14,11 @@ FIRST_STEP = (
     "Simulation(read_scene(catalog.scenes()['auv_waves'])).step()"
 )
 """What a first step is: of an AUV with thrusters and sensors, in a wave."""
+WITHOUT_PLUGINS = "import importlib.metadata as packages; packages.entry_points = lambda **_: (); "
+"""Keeps MuJoCo from plugins that are installed, ours among them."""
 STARTS = {
+    "mujoco alone": ("-c", f"{WITHOUT_PLUGINS}import mujoco"),
+    "mujoco": ("-c", "import mujoco"),
     "import": ("-c", "import buoyancy_mj"),
     "help": ("-m", "buoyancy_mj", "--help"),
     "first step": ("-c", FIRST_STEP),
@@ -44,6 +48,8 @@ def describe(results: dict[str, float]) -> Iterator[str]:
 def rows(results: dict[str, float]) -> Iterator[Row]:
     """Each of them."""
     names = {
+        "mujoco alone": "`import mujoco`, nothing else installed",
+        "mujoco": "`import mujoco`, which this package tells of its plugins",
         "import": "`import buoyancy_mj`",
         "help": "`buoyancy-mj --help`",
         "first step": "a fresh interpreter through the first step of `auv_waves`",

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine import layout
+from buoyancy_mj.engine import library
 from buoyancy_mj.kernels.vehicle.sensors.echoes import Echoes
 from buoyancy_mj.vehicle.sensors.kinds import Place
 
@@ -24,7 +24,7 @@ def make_echoes(
     """
     model, count = place.model, len(beams)
     return Echoes(
-        ray=layout.symbol("mj_ray"),
+        ray=library.symbol("mj_ray"),
         excluded=place.body if place.body > 0 else -1,
         root=int(model.body_rootid[place.body]),
         nearest=nearest,

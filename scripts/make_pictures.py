@@ -1,0 +1,95 @@
+"""Make the pictures of README.md and docs, and the film that opens README.md.
+
+    .venv/bin/python scripts/make_pictures.py [NAME ...]
+
+Films and stills are drawn by `buoyancy-mj run`, see docs/guide/film.md. Pictures of recordings are
+those that the Rerun viewer takes of itself; it needs a screen, and xvfb-run lends it one. Charts
+come from the scripts that measure what they show: bench.py, draw_house.py, reproduce_paper, and
+`buoyancy-mj validate`.
+"""
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+MOST_BYTES = 4_000_000
+"""Size of the largest of them."""
+_ONLY = ("--no-record",)
+
+FILMS: Mapping[str, Sequence[str]] = {
+    "hero.webp": (
+        "auv_sea_state_2", "--duration=6", "--fps=20", "--size=960x540", "--no-hud", *_ONLY,
+    ),
+}  # fmt: skip
+"""Scenes and flags of `buoyancy-mj run` by the names of films in docs."""
+STILLS: Mapping[str, Sequence[str]] = {
+    "sauvc.png": ("sauvc_course", "--at=21.4", "--size=1280x720", *_ONLY),
+    "fleet_at_sea.png": ("fleet", "--at=6", "--size=1280x720", *_ONLY),
+    "under.png": ("bluerov2_heavy_station", "--at=4", "--camera=under", "--size=1280x720", *_ONLY),
+}
+"""The same of stills."""
+RECORDINGS: Mapping[str, Sequence[str]] = {
+    "auv_waves.png": ("run", "auv_waves"),
+    "fleet.png": ("run", "fleet"),
+    "inspect.png": ("inspect", "sauvc_auv"),
+}
+"""Commands whose recordings are shown, by the names of the pictures in docs."""
+
+
+def main() -> None:
+    """Make the pictures that are asked for, or all."""
+    every = [*FILMS, *STILLS, *RECORDINGS]
+    parser = argparse.ArgumentParser(description="Make the pictures of README.md and docs.")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(every)}")
+    asked = parser.parse_args().names or every
+    if strange := [name for name in asked if name not in every]:
+        parser.error(f"there is no picture '{strange[0]}'; there are {', '.join(every)}")
+    for name in asked:
+        path = ROOT / "docs" / name
+        with tempfile.TemporaryDirectory() as folder:
+            made = Path(folder) / name
+            _make(name, made)
+            if made.stat().st_size > MOST_BYTES:
+                sys.exit(f"{name} has {made.stat().st_size:,} bytes, and may have {MOST_BYTES:,}")
+            shutil.copyfile(made, path)
+        print(f"{path.relative_to(ROOT)}: {path.stat().st_size:,} bytes")
+
+
+def _make(name: str, path: Path) -> None:
+    """Make one picture."""
+    if name in RECORDINGS:
+        command, what = RECORDINGS[name]
+        recording = path.with_suffix(".rrd")
+        _run(command, what, f"--record={recording}")
+        _photograph(recording, path)
+    else:
+        flags = FILMS.get(name) or STILLS[name]
+        _run("run", *flags, f"--{'video' if name in FILMS else 'screenshot'}={path}")
+
+
+def _run(*arguments: str) -> None:
+    """Run a command of buoyancy-mj."""
+    command = [sys.executable, "-m", "buoyancy_mj", *arguments]
+    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+
+
+def _photograph(recording: Path, path: Path, size: str = "1600x900") -> None:
+    """Let the Rerun viewer take a picture of itself with a recording open."""
+    viewer = Path(sys.executable).with_name("rerun")
+    flags = ["--screenshot-to", str(path), "--window-size", size]
+    screen: list[str] = []
+    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        if not shutil.which("xvfb-run"):
+            sys.exit("pictures of recordings need a screen: set DISPLAY, or install xvfb")
+        screen = ["xvfb-run", "--auto-servernum", f"--server-args=-screen 0 {size}x24"]
+    subprocess.run([*screen, str(viewer), str(recording), *flags], check=True, timeout=180)
+
+
+if __name__ == "__main__":
+    main()
