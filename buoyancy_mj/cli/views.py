@@ -16,6 +16,8 @@ RENDERERS = ("studio", "classic")
 ENDINGS = (".xml", ".mjcf", ".urdf")
 """How the names of models' files end."""
 LOOPBACK = "127.0.0.1"
+"""The address that this machine alone reaches."""
+LAST_PORT = 65535
 
 
 @command()
@@ -45,6 +47,10 @@ def view(
     """Show a scene in MuJoCo's Studio or in a browser, and change its water as it runs."""
     if renderer not in RENDERERS:
         raise SceneError(f"--renderer is {describe(renderer)}; {choices(renderer, RENDERERS)}")
+    if not 0 <= port <= LAST_PORT:
+        raise SceneError(
+            f"--port is {port}; it must be from 1 to {LAST_PORT}, or 0 for the first free one"
+        )
     settings = [*flags.overrides(), *selection.overrides()]
     if renderer == "classic":
         _view_classic(scene, settings, flags, web=web)
