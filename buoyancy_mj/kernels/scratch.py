@@ -1,9 +1,12 @@
 """`Scratch`: arrays to work in, for one thread."""
 
-from collections.abc import Mapping
+import math
+import mmap
+from collections.abc import Mapping, Sequence
 from typing import Annotated, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from buoyancy_mj.kernels import cuts, halving, swell
 from buoyancy_mj.kernels.arrays import Corners, Doubles, Field, fields
@@ -11,6 +14,11 @@ from buoyancy_mj.kernels.blocks import BlockStore
 from buoyancy_mj.kernels.heads import HEAD
 from buoyancy_mj.kernels.quadrature import AREA, PLACES
 from buoyancy_mj.kernels.tiles import TileStore
+
+_PRIVATE: Mapping[str, Any] = (
+    {"flags": mmap.MAP_PRIVATE | mmap.MAP_ANONYMOUS} if hasattr(mmap, "MAP_PRIVATE") else {}
+)
+"""What keeps memory from being shared with other processes; Windows shares none."""
 
 
 class CutScratch(NamedTuple):
@@ -53,7 +61,7 @@ class Scratch(NamedTuple):
 def new_scratches(count: int, vertices: int, waves: int) -> list[Scratch]:
     """Scratches for leaves of so many vertices, and for so many waves.
 
-    Each array of all of them is one block: of a large block, what nobody writes to costs no memory.
+    Each array of all of them is one block, of which what nobody writes to costs no memory.
     """
     return _new_blocks(Scratch, count, {"v": vertices, "w": waves})
 
@@ -63,10 +71,22 @@ def _new_blocks(kind: type, count: int, sizes: Mapping[str, int]) -> list[Any]:
     parts = [
         _new_blocks(field, count, sizes)
         if not isinstance(field, Field)
-        else list(np.zeros((count, *_lengths(field, sizes)), field.dtype))
+        else list(_new_block((count, *_lengths(field, sizes)), field.dtype))
         for field in fields(kind)
     ]
     return [kind(*members) for members in zip(*parts, strict=True)]
+
+
+def _new_block(shape: Sequence[int], dtype: Any) -> NDArray[Any]:
+    """An array of zeros, whose pages come from the system when they are written to.
+
+    Those of `numpy.zeros` do so only as long as the heap has no room for them.
+    """
+    # at least one byte, and not shared with children that are forked
+    count = math.prod(shape)
+    size = max(count * np.dtype(dtype).itemsize, 1)
+    room = mmap.mmap(-1, size, **_PRIVATE)
+    return np.frombuffer(room, dtype, count).reshape(shape)
 
 
 def _lengths(field: Field, sizes: Mapping[str, int]) -> list[int]:
