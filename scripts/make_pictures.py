@@ -3,18 +3,20 @@
     .venv/bin/python scripts/make_pictures.py [NAME ...]
 
 Films and stills are drawn by `buoyancy-mj run`, see docs/guide/film.md. Pictures of recordings are
-those that the Rerun viewer takes of itself; it needs a screen, and xvfb-run lends it one. Charts
-come from the scripts that measure what they show: bench.py, draw_house.py, reproduce_paper, and
-`buoyancy-mj validate`.
+those that the Rerun viewer takes of itself, and one is of Studio's window; both are opened on a
+screen that is not there, by Xvfb. Charts come from the scripts that measure what they show:
+bench.py, draw_house.py, reproduce_paper, and `buoyancy-mj validate`.
 """
 
 import argparse
+import contextlib
 import os
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+import time
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -40,11 +42,15 @@ RECORDINGS: Mapping[str, Sequence[str]] = {
     "inspect.png": ("inspect", "sauvc_auv"),
 }
 """Commands whose recordings are shown, by the names of the pictures in docs."""
+WINDOWS: Mapping[str, str] = {"studio.png": "auv_sea_state_2"}
+"""Scenes that `buoyancy-mj view` shows, by the names of the pictures in docs."""
+PATIENCE = 60.0
+"""Time until a window is looked at [s]."""
 
 
 def main() -> None:
     """Make the pictures that are asked for, or all."""
-    every = [*FILMS, *STILLS, *RECORDINGS]
+    every = [*FILMS, *STILLS, *RECORDINGS, *WINDOWS]
     parser = argparse.ArgumentParser(description="Make the pictures of README.md and docs.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(every)}")
     asked = parser.parse_args().names or every
@@ -64,10 +70,16 @@ def main() -> None:
 def _make(name: str, path: Path) -> None:
     """Make one picture."""
     if name in RECORDINGS:
-        command, what = RECORDINGS[name]
+        what, of = RECORDINGS[name]
         recording = path.with_suffix(".rrd")
-        _run(command, what, f"--record={recording}")
-        _photograph(recording, path)
+        _run(what, of, f"--record={recording}")
+        viewer = Path(sys.executable).with_name("rerun")
+        flags = ["--screenshot-to", str(path), "--window-size", "1600x900"]
+        with _open_screen("1600x900") as environment:
+            command = [str(viewer), str(recording), *flags]
+            subprocess.run(command, check=True, timeout=180, env=environment)
+    elif name in WINDOWS:
+        _photograph_window(WINDOWS[name], path)
     else:
         flags = FILMS.get(name) or STILLS[name]
         _run("run", *flags, f"--{'video' if name in FILMS else 'screenshot'}={path}")
@@ -79,16 +91,37 @@ def _run(*arguments: str) -> None:
     subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
 
 
-def _photograph(recording: Path, path: Path, size: str = "1600x900") -> None:
-    """Let the Rerun viewer take a picture of itself with a recording open."""
-    viewer = Path(sys.executable).with_name("rerun")
-    flags = ["--screenshot-to", str(path), "--window-size", size]
-    screen: list[str] = []
-    if not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        if not shutil.which("xvfb-run"):
-            sys.exit("pictures of recordings need a screen: set DISPLAY, or install xvfb")
-        screen = ["xvfb-run", "--auto-servernum", f"--server-args=-screen 0 {size}x24"]
-    subprocess.run([*screen, str(viewer), str(recording), *flags], check=True, timeout=180)
+def _photograph_window(scene: str, path: Path) -> None:
+    """Take a picture of Studio's window with a scene in it."""
+    from PIL import ImageGrab
+
+    command = [sys.executable, "-m", "buoyancy_mj", "view", scene]
+    with _open_screen("1280x800") as environment:
+        # where Studio remembers what its window looked like
+        environment["HOME"] = str(path.parent)
+        process = subprocess.Popen(command, cwd=ROOT, env=environment)
+        try:
+            time.sleep(PATIENCE)
+            ImageGrab.grab(xdisplay=environment["DISPLAY"]).save(path)
+        finally:
+            process.terminate()
+            process.wait(30)
+
+
+@contextlib.contextmanager
+def _open_screen(size: str) -> Iterator[dict[str, str]]:
+    """The environment of a process that has a screen of a size, which nobody sees."""
+    if not shutil.which("Xvfb"):
+        sys.exit("pictures of windows need a screen that is not there: apt install xvfb")
+    read, write = os.pipe()
+    command = ["Xvfb", "-displayfd", str(write), "-screen", "0", f"{size}x24"]
+    with subprocess.Popen(command, pass_fds=[write], stderr=subprocess.DEVNULL) as server:
+        os.close(write)
+        try:
+            with os.fdopen(read) as told:
+                yield os.environ | {"DISPLAY": f":{told.readline().strip()}"}
+        finally:
+            server.terminate()
 
 
 if __name__ == "__main__":
