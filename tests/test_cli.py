@@ -144,6 +144,7 @@ def test_notices_go_to_the_standard_error(run, tmp_path):
     ("arguments", "message"),
     [
         (("auv_wave",), r"error: there is no scene 'auv_wave'.*did you mean 'auv_waves'\?"),
+        (("tub.xml",), r"error: 'tub.xml' is a model, .*'run auv_waves --vehicle tub.xml', or"),
         (("auv_waves", "--vehicle", "none.xml"), r"error: there is no vehicle 'none.xml'"),
         (("auv_waves", "--vehicle", "bad.xml"), r"error: MuJoCo cannot read '.*bad.xml'.*XML"),
         (

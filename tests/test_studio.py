@@ -4,6 +4,7 @@ import math
 import socket
 import subprocess
 import sys
+import warnings
 
 import mujoco
 import numpy as np
@@ -12,13 +13,18 @@ import pytest
 from buoyancy_mj import Water, hydrostatics
 from buoyancy_mj.drawing.looks import DAYLIGHT
 from buoyancy_mj.engine.buoyancy import Buoyancy
-from buoyancy_mj.errors import DrawingError, ModelError, WaterError
+from buoyancy_mj.errors import BuoyancyWarning, DrawingError, ModelError, WaterError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.studio import deeds, library
 from buoyancy_mj.studio.basin import Basin
 from buoyancy_mj.studio.dry_copy import make_dry_spec
-from buoyancy_mj.studio.model_files import inspect_file, scene_of_file, write_verdict
+from buoyancy_mj.studio.model_files import (
+    inspect_file,
+    keep_own_water,
+    scene_of_file,
+    write_verdict,
+)
 from buoyancy_mj.studio.readings import Traces, list_forces, list_rows
 from buoyancy_mj.studio.readouts import Reader
 from buoyancy_mj.studio.sea_state import (
@@ -287,6 +293,9 @@ def test_a_model_with_water_keeps_it(tmp_path):
     scene, is_wet = scene_of_file(file)
     assert is_wet
     assert (scene.water.density, scene.water.level) == (1025.0, 0.4)
+    with warnings.catch_warnings(), keep_own_water():
+        warnings.simplefilter("error", BuoyancyWarning, append=True)
+        assert Basin(scene).water.density == 1025.0
 
 
 # what a machine lacks

@@ -13,8 +13,6 @@ from buoyancy_mj.scenes.scene import Scene, read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
 RENDERERS = ("studio", "classic")
-ENDINGS = (".xml", ".mjcf", ".urdf")
-"""How the names of models' files end."""
 LOOPBACK = "127.0.0.1"
 """The address that this machine alone reaches."""
 LAST_PORT = 65535
@@ -58,7 +56,7 @@ def view(
     from buoyancy_mj.studio.view import view_in_studio
 
     shown: Scene | Path
-    if Path(scene).suffix in ENDINGS:
+    if Path(scene).suffix in catalog.MODEL_ENDINGS:
         if settings:
             raise SceneError(
                 f"{describe(settings[0])} changes a scene, and '{scene}' is a model; leave it "

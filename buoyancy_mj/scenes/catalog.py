@@ -5,6 +5,8 @@ from pathlib import Path
 
 from buoyancy_mj.errors import BuoyancyError, ModelError, SceneError, choices, describe
 
+MODEL_ENDINGS = (".xml", ".mjcf", ".urdf")
+"""How the names of models' files end."""
 _PACKAGE = Path(__file__).resolve().parents[1]
 
 
@@ -31,8 +33,13 @@ def scene_path(name: str) -> Path:
     """The file of a scene: a path, or the name of a scene that ships.
 
     Raises:
-        SceneError: neither exists.
+        SceneError: neither exists, or it is a model.
     """
+    if Path(name).suffix in MODEL_ENDINGS:
+        raise SceneError(
+            f"{describe(name)} is a model, not a scene; put it into one, as in "
+            f"'run auv_waves --vehicle {name}', or look at it alone: 'view {name}'"
+        )
     return _find(name, scenes(), Path(), "scene", SceneError)
 
 

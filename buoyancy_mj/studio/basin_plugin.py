@@ -22,7 +22,12 @@ from buoyancy_mj.studio.letters import (
     VerdictEvent,
     WaterEvent,
 )
-from buoyancy_mj.studio.model_files import inspect_file, scene_of_file, write_verdict
+from buoyancy_mj.studio.model_files import (
+    inspect_file,
+    keep_own_water,
+    scene_of_file,
+    write_verdict,
+)
 from buoyancy_mj.studio.readouts import Reader
 from buoyancy_mj.studio.sea_state import describe_water
 from buoyancy_mj.studio.twin import Twin, make_dry_model
@@ -136,7 +141,8 @@ class BasinPlugin(plugin.SimPlugin):
         scene, is_wet = scene_of_file(path)
         self._path = path
         if is_wet:
-            self._float(Basin(scene))
+            with keep_own_water():
+                self._float(Basin(scene))
         else:
             self._dock(path)
 

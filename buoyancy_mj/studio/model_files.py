@@ -1,6 +1,9 @@
 """A model's file as a scene of its own, and what the inspection says of it."""
 
+import contextlib
 import dataclasses
+import warnings
+from collections.abc import Iterator
 from pathlib import Path
 
 import mujoco
@@ -9,6 +12,7 @@ import scipy
 
 from buoyancy_mj.engine.instances import plugin_instances
 from buoyancy_mj.engine.plugin import water_in
+from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
 from buoyancy_mj.scenes.scene import INTEGRATORS, Scene
 from buoyancy_mj.scenes.scene_vehicle import Start
@@ -36,6 +40,14 @@ def scene_of_file(path: Path) -> tuple[Scene, bool]:
         **{field.name: getattr(settings, field.name) for field in dataclasses.fields(Settings)},
     )
     return scene, is_wet
+
+
+@contextlib.contextmanager
+def keep_own_water() -> Iterator[None]:
+    """Leave out the note that the water of a model gives way: that of its scene is the same."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "the water '.*' of the model gives", BuoyancyWarning)
+        yield
 
 
 def inspect_file(path: Path) -> Inspection:
