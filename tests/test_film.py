@@ -449,3 +449,12 @@ def test_without_graphics_both_renderers_say_what_to_install(monkeypatch):
         with pytest.raises(DrawingError) as caught:
             Pictures(sim, size=SIZE, renderer=name)
         assert str(caught.value) == message
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="GLFW needs a display on Linux alone")
+def test_glfw_without_a_display_is_refused(monkeypatch):
+    monkeypatch.setenv("MUJOCO_GL", "glfw")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(DrawingError, match="MUJOCO_GL=glfw needs a display"):
+        open_gl()
