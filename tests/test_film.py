@@ -299,6 +299,21 @@ def test_a_film_of_another_run_is_not_gone_on_with(tmp_path):
     assert left.exists()
 
 
+def leave_a_film(path, size=SIZE, count=10):
+    """Pictures that a run which was killed has left under the name of a film."""
+    film = FilmFile(path, size, 30, "mark")
+    add_all(film, np.full((count, size[1], size[0], 3), 90, np.uint8))
+    return film.close(complete=False)
+
+
+def test_a_film_of_another_kind_is_not_gone_on_with(tmp_path):
+    left = leave_a_film(tmp_path / "a.mp4")
+    other = FilmFile(tmp_path / "a.gif", SIZE, 30, "mark")
+    assert other.kept == 0
+    other.discard()
+    assert left.exists()
+
+
 def test_a_full_disk_ends_a_film_that_plays(tmp_path, monkeypatch):
     film = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
     noise = np.random.default_rng(0).integers(0, 255, (60, SIZE[1], SIZE[0], 3), np.uint8)

@@ -51,6 +51,8 @@ class FilmFile:
     def __init__(self, path: Path, size: tuple[int, int], fps: int, mark: str) -> None:
         self._kind = find_kind(path, size, fps)
         self._fps = fps
+        # pictures of one encoder are no pictures of another
+        mark = f"{self._kind.codec} {mark}"
         self._file = RecordingFile(path, "(--video)", grows_as=GROWS_AS)
         self.count = 0
         """Number of its pictures."""
