@@ -314,6 +314,17 @@ def test_a_film_of_another_kind_is_not_gone_on_with(tmp_path):
     assert left.exists()
 
 
+def test_a_film_that_broke_off_stays_where_the_next_run_never_begins(tmp_path):
+    leave_a_film(tmp_path / "a.mp4")
+    never = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    assert never.kept == 10
+    never.discard()
+    again = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    assert again.kept == 10
+    again.close(complete=True)
+    assert os.listdir(tmp_path) == ["a.mp4"]
+
+
 def test_a_full_disk_ends_a_film_that_plays(tmp_path, monkeypatch):
     film = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
     noise = np.random.default_rng(0).integers(0, 255, (60, SIZE[1], SIZE[0], 3), np.uint8)

@@ -121,7 +121,11 @@ class FilmFile:
         return self._file.path
 
     def discard(self) -> None:
-        """Remove the file of a film that never began."""
+        """Remove the file of a film that never began; what an earlier run has drawn stays."""
+        if self.kept:
+            with contextlib.suppress(RecordingError):
+                self.close(complete=False)
+            return
         self._file.discard()
         self._release()
 
