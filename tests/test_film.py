@@ -314,6 +314,19 @@ def test_a_film_of_another_kind_is_not_gone_on_with(tmp_path):
     assert left.exists()
 
 
+def test_a_film_that_is_being_drawn_is_not_taken_over(tmp_path):
+    leave_a_film(tmp_path / "a.mp4")
+    first = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    with pytest.raises(RecordingError) as caught:
+        FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    place = tmp_path / "a.partial-2.mkv"
+    assert str(caught.value) == (
+        f"another run is writing '{place}'; choose another place (--video)"
+    )
+    assert first.close(complete=True) == tmp_path / "a.mp4"
+    assert os.listdir(tmp_path) == ["a.mp4"]
+
+
 def test_a_film_that_broke_off_stays_where_the_next_run_never_begins(tmp_path):
     leave_a_film(tmp_path / "a.mp4")
     never = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
@@ -323,6 +336,13 @@ def test_a_film_that_broke_off_stays_where_the_next_run_never_begins(tmp_path):
     assert again.kept == 10
     again.close(complete=True)
     assert os.listdir(tmp_path) == ["a.mp4"]
+
+
+def test_a_film_with_brackets_in_its_name_is_gone_on_with(tmp_path):
+    leave_a_film(tmp_path / "a[1].mp4")
+    again = FilmFile(tmp_path / "a[1].mp4", SIZE, 30, "mark")
+    assert again.kept == 10
+    again.discard()
 
 
 def test_a_full_disk_ends_a_film_that_plays(tmp_path, monkeypatch):
