@@ -119,7 +119,7 @@ def open_partial(path: Path) -> tuple[int, Path]:
         try:
             descriptor = os.open(partial, _NEW, 0o666)
         except FileExistsError:
-            _require_unlocked(partial)
+            require_unlocked(partial)
         else:
             lock(descriptor, partial)
             return descriptor, partial
@@ -145,6 +145,23 @@ def lock(descriptor: int, path: Path) -> None:
     except OSError:
         # a file system without locks
         return
+
+
+def require_unlocked(path: Path) -> None:
+    """Check that no other process has locked a file.
+
+    Raises:
+        BlockingIOError: one has; `filename` names the file.
+    """
+    try:
+        descriptor = os.open(path, os.O_RDONLY | _NEVER_WAIT)
+    except OSError:
+        # a link, or a file of somebody else
+        return
+    try:
+        lock(descriptor, path)
+    finally:
+        os.close(descriptor)
 
 
 @contextlib.contextmanager
@@ -214,16 +231,3 @@ def require_own(path: Path, mark: str) -> None:
     """
     if os.path.lexists(path) and not (path.is_file() and mark.encode() in path.read_bytes()):
         raise FileExistsError(17, "there is a file which was not made here", str(path))
-
-
-def _require_unlocked(path: Path) -> None:
-    """Raise `BlockingIOError` if another process has locked a file."""
-    try:
-        descriptor = os.open(path, os.O_RDONLY | _NEVER_WAIT)
-    except OSError:
-        # a link, or a file of somebody else
-        return
-    try:
-        lock(descriptor, path)
-    finally:
-        os.close(descriptor)

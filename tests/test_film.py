@@ -299,6 +299,52 @@ def test_a_film_of_another_run_is_not_gone_on_with(tmp_path):
     assert left.exists()
 
 
+def leave_a_film(path, size=SIZE, count=10):
+    """Pictures that a run which was killed has left under the name of a film."""
+    film = FilmFile(path, size, 30, "mark")
+    add_all(film, np.full((count, size[1], size[0], 3), 90, np.uint8))
+    return film.close(complete=False)
+
+
+def test_a_film_of_another_kind_is_not_gone_on_with(tmp_path):
+    left = leave_a_film(tmp_path / "a.mp4")
+    other = FilmFile(tmp_path / "a.gif", SIZE, 30, "mark")
+    assert other.kept == 0
+    other.discard()
+    assert left.exists()
+
+
+def test_a_film_that_is_being_drawn_is_not_taken_over(tmp_path):
+    leave_a_film(tmp_path / "a.mp4")
+    first = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    with pytest.raises(RecordingError) as caught:
+        FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    place = tmp_path / "a.partial-2.mkv"
+    assert str(caught.value) == (
+        f"another run is writing '{place}'; choose another place (--video)"
+    )
+    assert first.close(complete=True) == tmp_path / "a.mp4"
+    assert os.listdir(tmp_path) == ["a.mp4"]
+
+
+def test_a_film_that_broke_off_stays_where_the_next_run_never_begins(tmp_path):
+    leave_a_film(tmp_path / "a.mp4")
+    never = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    assert never.kept == 10
+    never.discard()
+    again = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
+    assert again.kept == 10
+    again.close(complete=True)
+    assert os.listdir(tmp_path) == ["a.mp4"]
+
+
+def test_a_film_with_brackets_in_its_name_is_gone_on_with(tmp_path):
+    leave_a_film(tmp_path / "a[1].mp4")
+    again = FilmFile(tmp_path / "a[1].mp4", SIZE, 30, "mark")
+    assert again.kept == 10
+    again.discard()
+
+
 def test_a_full_disk_ends_a_film_that_plays(tmp_path, monkeypatch):
     film = FilmFile(tmp_path / "a.mp4", SIZE, 30, "mark")
     noise = np.random.default_rng(0).integers(0, 255, (60, SIZE[1], SIZE[0], 3), np.uint8)
@@ -449,3 +495,12 @@ def test_without_graphics_both_renderers_say_what_to_install(monkeypatch):
         with pytest.raises(DrawingError) as caught:
             Pictures(sim, size=SIZE, renderer=name)
         assert str(caught.value) == message
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="GLFW needs a display on Linux alone")
+def test_glfw_without_a_display_is_refused(monkeypatch):
+    monkeypatch.setenv("MUJOCO_GL", "glfw")
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        monkeypatch.delenv(name, raising=False)
+    with pytest.raises(DrawingError, match="MUJOCO_GL=glfw needs a display"):
+        open_gl()

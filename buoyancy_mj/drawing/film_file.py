@@ -4,6 +4,7 @@ It grows as H.264 in Matroska, which plays wherever it breaks off.
 """
 
 import contextlib
+import glob
 from collections.abc import Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.film_kinds import KINDS, Kind
 from buoyancy_mj.errors import RecordingError, choices
+from buoyancy_mj.files import require_unlocked
 from buoyancy_mj.scenes.recording_file import RecordingFile
 
 HEAD = 4096
@@ -44,13 +46,15 @@ class FilmFile:
         mark: what tells this film from others of that name.
 
     Raises:
-        RecordingError: the name ends otherwise, the size or the rate is not that of such a film, or
-            the file cannot be made.
+        RecordingError: the name ends otherwise, the size or the rate is not that of such a film,
+            another run is writing it, or the file cannot be made.
     """
 
     def __init__(self, path: Path, size: tuple[int, int], fps: int, mark: str) -> None:
         self._kind = find_kind(path, size, fps)
         self._fps = fps
+        # pictures of one encoder are no pictures of another
+        mark = f"{self._kind.codec} {mark}"
         self._file = RecordingFile(path, "(--video)", grows_as=GROWS_AS)
         self.count = 0
         """Number of its pictures."""
@@ -119,7 +123,11 @@ class FilmFile:
         return self._file.path
 
     def discard(self) -> None:
-        """Remove the file of a film that never began."""
+        """Remove the file of a film that never began; what an earlier run has drawn stays."""
+        if self.kept:
+            with contextlib.suppress(RecordingError):
+                self.close(complete=False)
+            return
         self._file.discard()
         self._release()
 
@@ -151,12 +159,11 @@ class FilmFile:
     def _keep(self, mark: str) -> None:
         """Take over the longest film of the same mark that was not finished."""
         mine = self._file.partial
-        stem = self._file.path.stem
-        others = [
-            one
-            for one in mine.parent.glob(f"{stem}.partial*{GROWS_AS}")
-            if one != mine and _has_mark(one, mark)
-        ]
+        stem = glob.escape(self._file.path.stem)
+        others = [one for one in mine.parent.glob(f"{stem}.partial*{GROWS_AS}") if one != mine]
+        for one in others:
+            _require_left(one)
+        others = [one for one in others if _has_mark(one, mark)]
         films = {one: list(_read_packets(one)) for one in others}
         best = max(films.values(), key=len, default=[])
         for packet in best:
@@ -197,6 +204,16 @@ def find_kind(path: Path, size: tuple[int, int], fps: int) -> Kind:
         )
     kind.check(path, size, fps)
     return kind
+
+
+def _require_left(path: Path) -> None:
+    """Check that no other run is writing a film."""
+    try:
+        require_unlocked(path)
+    except BlockingIOError as error:
+        raise RecordingError(
+            f"another run is writing '{path}'; choose another place (--video)"
+        ) from error
 
 
 def _has_mark(path: Path, mark: str) -> bool:

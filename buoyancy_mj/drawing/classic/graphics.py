@@ -43,6 +43,10 @@ def _find_class() -> Any:
 def _choose() -> str:
     """The library that makes contexts, as MuJoCo calls it."""
     chosen = os.environ.get("MUJOCO_GL", "").lower()
+    has_screen = any(map(os.environ.get, SCREENS))
+    if chosen == "glfw" and sys.platform.startswith("linux") and not has_screen:
+        # GLFW only warns, and MuJoCo fails later
+        raise OSError("MUJOCO_GL=glfw needs a display; take MUJOCO_GL=egl, or leave it out")
     if chosen in ("egl", "osmesa", "glfw"):
         return chosen
     if not sys.platform.startswith("linux"):
@@ -50,6 +54,6 @@ def _choose() -> str:
     for name, library in (("egl", "EGL"), ("osmesa", "OSMesa")):
         if ctypes.util.find_library(library):
             return name
-    if any(map(os.environ.get, SCREENS)):
+    if has_screen:
         return "glfw"
     raise OSError("neither EGL nor OSMesa nor a display")
