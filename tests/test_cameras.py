@@ -130,6 +130,12 @@ def test_a_camera_of_the_model_is_used_as_it_is():
     assert shot.forward == pytest.approx(np.array([-1.0, 0.0, -1.0]) / np.sqrt(2.0))
 
 
+def test_an_orthographic_camera_is_refused_for_films_are_in_perspective():
+    camera = '<camera name="mast" projection="orthographic" fovy="2"/>'
+    with pytest.raises(DrawingError, match="'mast' is orthographic, and films are in perspective"):
+        next(film(*build((0.0, 0.0), more=camera), "mast", [0.0]))
+
+
 def test_an_unknown_camera_is_refused_with_the_names_of_all():
     camera = '<camera name="mast"/>'
     with pytest.raises(DrawingError) as caught:

@@ -172,6 +172,18 @@ def test_a_file_that_is_no_model_is_refused_and_the_scene_goes_on(session, tmp_p
     session.run(0.02)
 
 
+def test_a_model_in_which_nothing_can_float_is_refused_and_the_scene_goes_on(session, tmp_path):
+    path = tmp_path / "still.xml"
+    path.write_text("<mujoco><worldbody><geom type='box' size='1 1 1'/></worldbody></mujoco>")
+    before = session.handle.model
+    session.tell(messages.LoadModelEvent(path=str(path)))
+    assert session.hear(RefusalEvent).sentence
+    assert session.handle.model is before
+    time = session.handle.data.time
+    session.run(0.05)
+    assert session.handle.data.time > time
+
+
 def test_studio_is_loaded_in_this_python():
     from buoyancy_mj.studio.library import load_studio
 

@@ -51,7 +51,7 @@ def find_camera(
     """The camera of a name: `FOLLOW`, `ORBIT`, `UNDER`, or one of the model.
 
     Raises:
-        DrawingError: there is none; the message names those that are.
+        DrawingError: there is none, and the message names those that are; or it is orthographic.
     """
     if name in (FOLLOW, ORBIT, UNDER):
         return Follower(name, model, subject, water, aspect)
@@ -59,7 +59,13 @@ def find_camera(
     if name not in names:
         possible = [FOLLOW, ORBIT, UNDER, *filter(None, names)]
         raise DrawingError(f"there is no camera '{name}'; {choices(name, possible)}")
-    return FixedCamera(model, names.index(name))
+    index = names.index(name)
+    if model.cam_projection[index] != mujoco.mjtProjection.mjPROJ_PERSPECTIVE:
+        raise DrawingError(
+            f"camera '{name}' is orthographic, and films are in perspective; leave out its "
+            f"projection, or take {FOLLOW}, {ORBIT} or {UNDER}"
+        )
+    return FixedCamera(model, index)
 
 
 class FixedCamera:

@@ -139,18 +139,19 @@ class BasinPlugin(plugin.SimPlugin):
     def _open(self, path: Path) -> None:
         """Show another model: afloat if it brings its water, dry otherwise."""
         scene, is_wet = scene_of_file(path)
-        self._path = path
         if is_wet:
             with keep_own_water():
                 self._float(Basin(scene))
         else:
             self._dock(path)
+        self._path = path
 
     def _dock(self, path: Path) -> None:
         """Show a model dry, with what the inspection says."""
-        self._basin = None
-        self.handle.set_model(make_dry_model(scene_of_file(path)[0], DAYLIGHT, skin=self._skin))
         inspection = inspect_file(path)
+        dry = make_dry_model(scene_of_file(path)[0], DAYLIGHT, skin=self._skin)
+        self._basin = None
+        self.handle.set_model(dry)
         lines = tuple(write_verdict(inspection))
         can_float = bool(inspection.vessels)
         self.handle.send_to_viewer(VerdictEvent(path.stem, lines, can_float))

@@ -21,7 +21,7 @@ from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.studio.basin import Basin
 from buoyancy_mj.studio.basin_plugin import BasinPlugin
-from buoyancy_mj.studio.model_files import keep_own_water, scene_of_file
+from buoyancy_mj.studio.model_files import inspect_file, keep_own_water, scene_of_file
 from buoyancy_mj.studio.sea_panel import SeaPanel
 from buoyancy_mj.studio.sea_plugins import BrowserSea, WindowSea
 from buoyancy_mj.studio.sea_state import JONSWAP, REGULAR, SeaState
@@ -89,6 +89,8 @@ def _simulate(
         return BasinPlugin(basin, None, control, skin=skin)
     scene, is_wet = scene_of_file(shown)
     if not is_wet:
+        # what can never float is refused before a window opens
+        inspect_file(shown)
         return BasinPlugin(None, shown, control, skin=skin)
     with keep_own_water():
         basin = Basin(scene)
