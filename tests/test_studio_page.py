@@ -65,7 +65,7 @@ def test_the_wave_slider_moves_the_sea_that_a_browser_shows(page):
         if differs(take_name(page), named):
             break
     assert differs(take_name(page), named), "the waves are still called still"
-    assert wait_for(lambda: differs(take_sea(page), calm), 30)
+    assert wait_for(lambda: differs(take_sea(page), calm), 120)
 
 
 def take_name(browser):
