@@ -377,6 +377,14 @@ def test_a_picture_is_a_png(tmp_path):
     assert str(caught.value) == f"the picture is '{tmp_path}/a.jpg'; its name ends in .png"
 
 
+def test_a_picture_that_cannot_be_written_is_refused_before_the_run(tmp_path):
+    (tmp_path / "folder.png").mkdir()
+    (tmp_path / "file").touch()
+    for name in ("folder.png", "file/a.png"):
+        with pytest.raises(RecordingError, match=r"cannot write .*; choose another place"):
+            Still(Shades(), tmp_path / name)
+
+
 def test_the_last_frame_is_the_picture_where_no_time_is_given(tmp_path):
     sim, shades = simulation("duration=0.3"), Shades()
     still = Still(shades, tmp_path / "a.png")
@@ -395,7 +403,7 @@ def test_the_last_frame_is_the_picture_where_no_time_is_given(tmp_path):
     [
         (
             "a.avi", SIZE, 30,
-            "the film is '{}/a.avi'; the end of its name says what it is: possible: .gif, .mp4, "
+            "the film is '{}/a.avi', and its name does not end as a film's; possible: .gif, .mp4, "
             ".webp",
         ),
         (

@@ -1,7 +1,10 @@
 """`Film` and `Still`: pictures of a run as files."""
 
+import errno
 import hashlib
 import math
+import os
+import tempfile
 from pathlib import Path
 
 import mujoco
@@ -88,7 +91,8 @@ class Still:
         at: time of the frame [s]; the first that is not before it is taken. None for the last.
 
     Raises:
-        RecordingError: the name ends otherwise, or what writes it is not installed.
+        RecordingError: the name ends otherwise, what writes it is not installed, or it cannot be
+            written there.
     """
 
     def __init__(self, pictures: Pictures, path: Path, at: float | None = None) -> None:
@@ -98,6 +102,14 @@ class Still:
             from PIL import Image
         except ModuleNotFoundError as error:
             raise RecordingError(MISSING.format("a picture", error.name)) from error
+        # at once, and not after the run
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            with tempfile.TemporaryFile(dir=path.parent):
+                if path.is_dir():
+                    raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        except OSError as error:
+            raise self._refusal(path, error) from error
         self._from_pixels = Image.fromarray
         self._pictures, self._path, self._at = pictures, path, at
         self._last: Frame | None = None
@@ -129,11 +141,15 @@ class Still:
             with replace_file(self._path) as part:
                 self._from_pixels(pixels).save(part)
         except OSError as error:
-            raise RecordingError(
-                f"cannot write '{self._path}': {error.strerror or error}; choose another place "
-                "(--screenshot)"
-            ) from error
+            raise self._refusal(self._path, error) from error
         return self._path
+
+    @staticmethod
+    def _refusal(path: Path, error: OSError) -> RecordingError:
+        """What to say of a place where no picture can be written."""
+        return RecordingError(
+            f"cannot write '{path}': {error.strerror or error}; choose another place (--screenshot)"
+        )
 
 
 def _mark(run: Run, pictures: Pictures, fps: int) -> str:

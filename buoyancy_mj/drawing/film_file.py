@@ -199,7 +199,7 @@ def find_kind(path: Path, size: tuple[int, int], fps: int) -> Kind:
     kind = KINDS.get(path.suffix)
     if kind is None:
         raise RecordingError(
-            f"the film is '{path}'; the end of its name says what it is: "
+            f"the film is '{path}', and its name does not end as a film's; "
             f"{choices(path.suffix, KINDS)}"
         )
     kind.check(path, size, fps)
