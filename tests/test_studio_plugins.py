@@ -92,10 +92,13 @@ def test_a_sea_that_the_window_asks_for_acts_from_the_next_step_on(session):
 
 def test_a_sea_that_cannot_be_is_refused_in_one_sentence(session):
     before = session.plugin._basin.water
+    session.viewer.get_sim_events()
     session.tell(SeaSnapshot(SeaState(spectrum="regular", height=3.0, period=0.8)))
     letters = session.viewer.get_sim_events()
     (refusal,) = [one.sentence for one in letters if isinstance(one, RefusalEvent)]
     assert "higher than long" in refusal
+    # which would take the sentence from the panel
+    assert not any(isinstance(one, WaterEvent) for one in letters)
     assert session.plugin._basin.water is before
 
 

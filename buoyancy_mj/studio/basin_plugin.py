@@ -75,7 +75,8 @@ class BasinPlugin(plugin.SimPlugin):
         elif self._basin is not None:
             self._publish()
         elif self._path is not None:
-            self._dock(self._path)
+            path = self._path
+            self._try(lambda: self._dock(path))
         return True
 
     @messages.handler
@@ -92,9 +93,13 @@ class BasinPlugin(plugin.SimPlugin):
 
     @messages.handler
     def on_sea(self, snapshot: SeaSnapshot) -> None:
-        """Let another water act."""
-        self._act(lambda basin: basin.put_into(snapshot.sea.make_water(basin.scene.water)))
-        self._tell_water()
+        """Let another water act; where it cannot be, the window is told that alone."""
+
+        def change(basin: Basin) -> None:
+            basin.put_into(snapshot.sea.make_water(basin.scene.water))
+            self._tell_water()
+
+        self._act(change)
 
     @messages.handler
     def on_drop(self, event: DropEvent) -> None:

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.looks import Look
 from buoyancy_mj.drawing.sky import shade_sky
+from buoyancy_mj.studio.grids import list_faces
 
 RADIUS = 4000.0
 """Radius of the dome [m]."""
@@ -29,7 +30,7 @@ def add_dome(spec: mujoco.MjSpec, look: Look) -> None:
     mesh.uservert = (RADIUS * rays).ravel()
     mesh.usernormal = (-rays).ravel()
     mesh.usertexcoord = np.column_stack([turn / (2.0 * np.pi), 0.5 - height / np.pi]).ravel()
-    mesh.userface = _list_faces().ravel()
+    mesh.userface = list_faces(ROWS + 1, COLUMNS + 1).ravel()
 
     picture = spec.add_texture(name="dome", type=mujoco.mjtTexture.mjTEXTURE_2D)
     picture.width, picture.height, picture.nchannel = WIDTH, HEIGHT, 3
@@ -70,12 +71,3 @@ def _ray(height: NDArray[np.float64], turn: NDArray[np.float64]) -> NDArray[np.f
     """Unit vectors (..., 3) at heights over the horizon and turns about the vertical [rad]."""
     flat = np.cos(height)
     return np.stack([flat * np.cos(turn), flat * np.sin(turn), np.sin(height)], axis=-1)
-
-
-def _list_faces() -> NDArray[np.int32]:
-    """Triangles (m, 3) of the dome, counterclockwise from within."""
-    corner = np.arange((ROWS + 1) * (COLUMNS + 1)).reshape(ROWS + 1, COLUMNS + 1)
-    a, b = corner[:-1, :-1].ravel(), corner[1:, :-1].ravel()
-    c, d = corner[1:, 1:].ravel(), corner[:-1, 1:].ravel()
-    faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    return faces.astype(np.int32)

@@ -46,7 +46,7 @@ class SeaPanel(plugin.ViewerPlugin):
     @messages.handler
     def on_verdict(self, event: VerdictEvent) -> None:
         """Show what the inspection of a dry model says."""
-        self._sea, self._refusal, self._verdict = None, "", event
+        self._sea, self._doubts, self._refusal, self._verdict = None, (), "", event
 
     @messages.handler
     def on_build_gui(self, _: messages.BuildGuiEvent) -> None:

@@ -9,6 +9,7 @@ from buoyancy_mj.drawing.looks import Look
 from buoyancy_mj.drawing.ripples import paint_ripples
 from buoyancy_mj.drawing.sea_mesh import Band, split_waves
 from buoyancy_mj.sea.water import Water
+from buoyancy_mj.studio.grids import list_faces
 
 CELLS = 4
 """Number of cells along the radius; by so many the surface is moved at a time."""
@@ -84,7 +85,7 @@ class SkinSea:
         bind = np.stack([_filter(rest), _filter(rest.T), np.zeros_like(rest)], -1).reshape(-1, 3)
         vertices = weights @ bind
         side = PARTS * (count - 1) + 1
-        faces = _grid_faces(side)
+        faces = list_faces(side, side)
         ripples = spec.add_texture(name=f"{NAME}/ripples", type=mujoco.mjtTexture.mjTEXTURE_2D)
         ripples.width = ripples.height = PIXELS
         ripples.nchannel = 3
@@ -135,12 +136,3 @@ def _spline_weights(count: int) -> scipy.sparse.csr_array:
         np.add.at(matrix, (np.arange(len(places)), bone), part)
     line = scipy.sparse.csr_array(matrix)
     return scipy.sparse.csr_array(scipy.sparse.kron(line, line))
-
-
-def _grid_faces(side: int) -> NDArray[np.int32]:
-    """Triangles (m, 3) of a square of vertices, counterclockwise from above."""
-    corner = np.arange(side * side).reshape(side, side)
-    a, b = corner[:-1, :-1].ravel(), corner[1:, :-1].ravel()
-    c, d = corner[1:, 1:].ravel(), corner[:-1, 1:].ravel()
-    faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
-    return faces.astype(np.int32)
