@@ -1,4 +1,4 @@
-"""`keep_scenes`: a window of Studio lives on where its model comes late.
+"""`keep_scenes`: a window of Studio lives on where its model changes.
 
 MuJoCo 4.0.0 ends the process when the model changes in a window of Studio that has drawn another:
 it destroys what it draws the old one from, and draws again. A window begins with an empty model. So
@@ -21,13 +21,15 @@ _SCENE = "scn"
 
 def keep_scenes() -> None:
     """Let windows of Studio keep what they drew earlier models from, if there are windows."""
-    if _LAUNCHER in sys.modules and mujoco.__version__ == MENDED:
-        _mend_windows()
+    if _LAUNCHER in sys.modules:
+        mend_windows()
 
 
 @functools.cache
-def _mend_windows() -> None:
+def mend_windows() -> None:
     """Keep a scene when its model changes, and give the next model a scene of its own."""
+    if mujoco.__version__ != MENDED:
+        return
     try:
         from mujoco.studio.native_viewer import NativeViewer
     except ImportError:

@@ -2,11 +2,11 @@
 
 from typing import Any
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.filament.graphics import quiet
+from buoyancy_mj.engine.kept_scenes import mend_windows
 from buoyancy_mj.studio.library import load_renderer
 
 load_renderer()
@@ -31,7 +31,7 @@ class SeaWindow(native_viewer.NativeViewer):
     """What is behind the panels (height, width, 3)."""
 
     def __init__(self, config: Any, endpoint: Any, *, plugins: list[Any]) -> None:
-        self._kept: list[Any] = []
+        mend_windows()
         with quiet():
             super().__init__(config, endpoint, plugins=plugins)
         self._window: Any = _Backdrop(self._window, self)
@@ -40,17 +40,6 @@ class SeaWindow(native_viewer.NativeViewer):
     def size(self) -> tuple[int, int]:
         """Width and height [pixels]."""
         return self._window.GetWidth(), self._window.GetHeight()
-
-    def _sync_renderer(self, model: mujoco.MjModel) -> None:
-        """Keep the scene of an earlier model: in 4.0.0 its end would end the process."""
-        if id(model) != self._renderer_model_id:
-            self._kept.append((self._model_scene, self._renderer._scenes.pop("scn", None)))
-        super()._sync_renderer(model)
-
-    def close(self) -> None:
-        """Close the window, after all that belongs to its engine."""
-        self._kept.clear()
-        super().close()
 
     def sync(self) -> None:
         """Draw the panels, over the picture; Studio's own view of the model is left black."""
