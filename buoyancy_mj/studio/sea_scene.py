@@ -7,9 +7,8 @@ import numpy as np
 from mujoco import mjrf
 from numpy.typing import NDArray
 
-from buoyancy_mj.drawing.filament.graphics import open_context
 from buoyancy_mj.drawing.filament.sea import FilamentSea
-from buoyancy_mj.drawing.filament.sky import FilamentSky
+from buoyancy_mj.drawing.filament.stage import Stage
 from buoyancy_mj.sea.water import Water
 
 
@@ -25,18 +24,9 @@ class SeaScene:
     """
 
     def __init__(self, model: mujoco.MjModel, radius: float) -> None:
-        context = self._context = open_context()
-        self._scene = context.create_scene(mjrf.SceneParams())
-        self._scene.configure_from_model(model)
-        resources = mjrf.ModelResources(context, model)
-        self._lights = mjrf.ModelLights(self._scene, resources)
-        self._bodies = mjrf.ModelRenderables(self._scene, resources)
-        self._sky = FilamentSky(context, self._scene)
+        self._stage = Stage(model)
         self._radius = radius
         self._sea: FilamentSea | None = None
-        self._target = context.create_render_target(
-            mjrf.RenderTargetConfig(color_format=mjrf.PixelFormat.PIXEL_FORMAT_RGB8)
-        )
 
     def draw(
         self,
@@ -57,31 +47,16 @@ class SeaScene:
             options: which groups are shown.
             size: width and height of the picture [pixels].
         """
-        # what is there
-        eye = np.array(camera.pos, float)
-        self._bodies.set_options(options)
-        self._bodies.update(data)
-        self._lights.update(data)
         is_below = False
         if water is not None:
             if self._sea is None:
-                self._sea = FilamentSea(self._context, self._scene, self._radius, water.curvature)
-            self._sea.draw(water, middle, float(data.time), eye)
+                self._sea = self._stage.add_sea(self._radius, water.curvature)
+            self._sea.draw(water, middle, float(data.time), np.array(camera.pos, float))
             is_below = bool(self._sea.is_below)
-        self._sky.draw(is_below=is_below)
-
-        # the picture of it
+        self._stage.bodies.set_options(options)
+        self._stage.pose(data, is_below=is_below)
         width, height = size
-        request = mjrf.RenderRequest()
-        request.scene, request.target = self._scene, self._target
-        request.camera = _convert(camera, width / height)
-        request.viewport.width, request.viewport.height = size
-        self._target.resize(width, height)
-        pixels = np.empty((height, width, 3), np.uint8)
-        reading = mjrf.ReadRequest(target=self._target)
-        reading.set_buffer(pixels)
-        self._context.wait_for_frame(self._context.render([request], [reading]))
-        return pixels
+        return self._stage.draw(_convert(camera, width / height), size)
 
 
 def _convert(camera: mujoco.MjvGLCamera, aspect: float) -> Any:

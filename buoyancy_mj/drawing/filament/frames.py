@@ -5,9 +5,7 @@ import numpy as np
 from mujoco import mjrf
 from numpy.typing import NDArray
 
-from buoyancy_mj.drawing.filament.graphics import open_context
-from buoyancy_mj.drawing.filament.sea import FilamentSea
-from buoyancy_mj.drawing.filament.sky import FilamentSky
+from buoyancy_mj.drawing.filament.stage import Stage
 from buoyancy_mj.drawing.looks import DAYLIGHT, Look
 from buoyancy_mj.drawing.shots import Shot
 from buoyancy_mj.sea.water import Water
@@ -41,20 +39,9 @@ class FilamentFrames:
         look: Look = DAYLIGHT,
     ) -> None:
         self._water, self._look = water, look
-        self._width, self._height = size
-        context = self._context = open_context()
-        self._scene = context.create_scene(mjrf.SceneParams())
-        self._scene.configure_from_model(model)
-        resources = mjrf.ModelResources(context, model)
-        self._lights = mjrf.ModelLights(self._scene, resources)
-        self._bodies = mjrf.ModelRenderables(self._scene, resources)
-        self._sky = FilamentSky(context, self._scene, look)
-        self._sea = FilamentSea(context, self._scene, radius, water.curvature, look)
-
-        self._target = context.create_render_target(
-            mjrf.RenderTargetConfig(color_format=mjrf.PixelFormat.PIXEL_FORMAT_RGB8)
-        )
-        self._target.resize(*size)
+        self._size = size
+        self._stage = Stage(model, look)
+        self._sea = self._stage.add_sea(radius, water.curvature)
 
     def draw(
         self,
@@ -73,24 +60,16 @@ class FilamentFrames:
             segments: whether to give, in the place of colours, what is seen: white for the sea,
                 black for the sky, and other colours for each part of the model.
         """
-        self._lights.update(data)
-        self._bodies.update(data)
         far = max(self._look.visibility, 4.0 * shot.subject)
         self._sea.draw(self._water, centre, float(data.time), shot.eye, far)
-        self._sky.draw(is_below=bool(self._sea.is_below))
+        is_below = bool(self._sea.is_below)
+        self._stage.pose(data, is_below=is_below)
 
-        request = mjrf.RenderRequest()
-        request.scene, request.target = self._scene, self._target
-        near = NEAR * shot.subject
-        request.camera = mjrf.Camera(**shot.frustum(self._width / self._height, near, FAR))
-        request.viewport.width, request.viewport.height = self._width, self._height
-        request.headlight = bool(self._sea.is_below)
-        request.headlight_intensity = self._look.lamp_below
+        # under water a lamp beside the camera; segments are drawn as they are
+        wishes = {"headlight": is_below, "headlight_intensity": self._look.lamp_below}
         if segments:
-            request.draw_mode = mjrf.DrawMode.DRAW_MODE_SEGMENTATION_BY_ID
-            request.post_processing = False
-        pixels = np.empty((self._height, self._width, 3), np.uint8)
-        reading = mjrf.ReadRequest(target=self._target)
-        reading.set_buffer(pixels)
-        self._context.wait_for_frame(self._context.render([request], [reading]))
-        return pixels
+            mode = mjrf.DrawMode.DRAW_MODE_SEGMENTATION_BY_ID
+            wishes |= {"draw_mode": mode, "post_processing": False}
+        width, height = self._size
+        frustum = shot.frustum(width / height, NEAR * shot.subject, FAR)
+        return self._stage.draw(mjrf.Camera(**frustum), self._size, **wishes)
