@@ -19,20 +19,19 @@ from buoyancy_mj.viz import instruments, plots
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
+from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.forces import ForceDrawing
-from buoyancy_mj.viz.framing import find_middle, measure_extent
 from buoyancy_mj.viz.live_viewer import open_viewer
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.rrd import RrdFile
 from buoyancy_mj.viz.tendons import TendonDrawing
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
-from buoyancy_mj.viz.water_surface import SurfaceDrawing
+from buoyancy_mj.viz.sea_surface import SurfaceDrawing
+from buoyancy_mj.viz.sky import draw_sky
 
 FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
 """Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
 more of its work."""
-CLOSER = 0.6
-"""Distance of the eye from several vehicles over that from one as long as all of them."""
 
 
 class Recording:
@@ -90,10 +89,10 @@ class Recording:
         vehicles = run.vehicles.values()
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
-        self._size = measure_extent(vehicles, self._start)
         length = max(vehicle.length for vehicle in vehicles)
         self._bodies = BodyDrawing(run, length)
-        self._surface = SurfaceDrawing(run.buoyancy.water, self._size)
+        self._eye = Eye(run, self._start)
+        self._surface = SurfaceDrawing(run.buoyancy.water, self._eye)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
@@ -128,8 +127,9 @@ class Recording:
         # the picture
         self._log.time = frame.time
         self._bodies.draw(self._log, frame)
-        middle = find_middle(one.centre_of_mass for one in frame.vehicles.values())
-        self._surface.draw(self._log, middle, frame.time)
+        centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
+        self._eye.draw(self._log, centres, frame.time)
+        self._surface.draw(self._log, frame.time)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
@@ -180,18 +180,9 @@ class Recording:
     def _draw_static(self) -> None:
         """Draw what stays the same in all frames."""
         run, channels = self.run, self._instruments.channels
-        vehicles = run.vehicles.values()
-        middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
-        # at the surface over the vehicles, or under it where they are deep
-        reach = 0.5 * self._size
-        height = np.clip(run.buoyancy.water.level, middle[2] - reach, middle[2] + reach)
-        look_at = np.array([*middle[:2], height])
-        # vehicles apart from each other fill less of the picture than one
-        size = CLOSER * self._size if self._several else self._size
         layout = run_blueprint(
             run.title,
-            look_at,
-            size,
+            self._eye,
             texts=self._texts,
             vehicles=self._several,
             instruments=instruments.list_plots(channels),
@@ -200,6 +191,8 @@ class Recording:
             stream.send_blueprint(layout)
         self._log.keep("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._log_text("scene", f"```toml\n{run.text}\n```")
+        draw_sky(self._log)
+        self._eye.draw_static(self._log)
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
         for forces in self._forces:
