@@ -6,14 +6,14 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from buoyancy_mj.viz import sea_surface, sky
+from buoyancy_mj.viz import motes, sea_surface, sky
 from buoyancy_mj.viz.eye import ENTITY, Eye
 from buoyancy_mj.viz.log import TIMELINE
 from buoyancy_mj.viz.plots import list_plots
 
 BACKGROUND = (24, 30, 40)
 """Colour behind an inspection."""
-SURROUNDINGS = (sky.ENTITY, sea_surface.ENTITY, sea_surface.FAR, ENTITY)
+SURROUNDINGS = (sky.ENTITY, sea_surface.ENTITY, sea_surface.FAR, motes.ENTITY, ENTITY)
 """Entities that a pointer passes over."""
 MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
 """Names of the tabs of plots."""

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import rerun as rr
-from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame
@@ -12,6 +11,7 @@ from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.submersion.wetted_surface import cut_waterline
 from buoyancy_mj.viz.depth_tint import DepthTint
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.tiles import tile_geom
 from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
 from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 
@@ -28,11 +28,12 @@ class BodyDrawing:
     Args:
         run: the run.
         size: length of the vehicle [m].
+        tile: side of the squares on floors and walls [m].
     """
 
-    def __init__(self, run: Run, size: float) -> None:
+    def __init__(self, run: Run, size: float, tile: float) -> None:
         self._run = run
-        self._size = size
+        self._size, self._tile = size, tile
         self._geoms = list(find_visible_geoms(run.model))
         self._moving = [geom for geom in self._geoms if geom.moves]
         self._foils = list(find_visible_foils(run.model))
@@ -45,6 +46,11 @@ class BodyDrawing:
             np.array([geom.colour for geom in self._moving], np.uint8).reshape(-1, 4),
         )
         self._due = -math.inf
+
+    @property
+    def has_surroundings(self) -> bool:
+        """Whether anything stays that is seen."""
+        return len(self._moving) < len(self._geoms)
 
     def draw_static(self, log: Log) -> None:
         """Draw all geoms, and foils that are sites, in the frames of their bodies."""
@@ -60,6 +66,9 @@ class BodyDrawing:
             log.keep(entity, pose)
             if not geom.moves:
                 log.keep(entity, rr.Mesh3D.from_fields(albedo_factor=geom.colour))
+                squares = tile_geom(geom, self._tile)
+                if squares is not None:
+                    log.keep(entity, squares)
         for visible in self._foils:
             self._draw_foil(log, visible)
         radius = 0.003 * self._size

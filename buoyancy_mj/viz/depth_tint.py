@@ -10,7 +10,7 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz.log import Log
 
-SHALLOW, DEEP = np.array([0.88, 0.98, 1.0]), np.array([0.5, 0.84, 0.95])
+SHALLOW, DEEP = np.array([0.9, 0.98, 1.0]), np.array([0.68, 0.9, 1.0])
 """What is left of red, green and blue just under the surface and far below it."""
 FADE = 6.0
 """Depth over which colours change [m]."""

@@ -19,7 +19,7 @@ FOVY = math.radians(55.0)
 """Angle that the viewer's eye takes from top to bottom [rad]."""
 ASPECT = 1.4
 """Width of the view over its height, about."""
-ROOM = 0.5, 0.75
+ROOM = 0.5, 0.85
 """Part of the picture that vehicles fill, from top to bottom and across."""
 PITCH = math.radians(14.0), math.radians(10.0)
 """Angle by which the eye stands higher than what it looks at [rad]: over water, and in it."""
@@ -122,7 +122,9 @@ class Eye:
         half = 0.5 * (high - low)
         along = math.hypot(half[0], half[1]) + self._alone
         self.distance = max(self.distance, find_distance(along, half[2] + self._alone))
-        log.draw(ENTITY, rr.Transform3D, translation=self.position[None], mat3x3=self._turn)
+        log.draw(
+            ENTITY, rr.Transform3D, translation=self.position[None], quaternion=self._turn[None]
+        )
 
     def _follow(self, middle: NDArray[np.float64], time: float) -> None:
         """Go after what it looks at, late, but never so late that it leaves the picture."""
@@ -153,11 +155,13 @@ def find_distance(along: float, up: float) -> float:
 
 
 def _look_along(forward: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How a level camera turns that looks along a unit vector (3,): by columns (1, 9)."""
+    """The quaternion (4,), the scalar last, of a level camera that looks along a unit vector."""
     right = np.cross(forward, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
-    # right, down and forward
-    return np.concatenate([right, np.cross(forward, right), forward])[None]
+    turn = np.column_stack([right, np.cross(forward, right), forward])
+    scalar_first = np.empty(4)
+    mujoco.mju_mat2Quat(scalar_first, turn.ravel())
+    return np.roll(scalar_first, -1)
 
 
 def measure_crest(water: Water) -> float:

@@ -23,11 +23,13 @@ from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.forces import ForceDrawing
 from buoyancy_mj.viz.live_viewer import open_viewer
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.motes import MoteDrawing
 from buoyancy_mj.viz.rrd import RrdFile
-from buoyancy_mj.viz.tendons import TendonDrawing
-from buoyancy_mj.viz.thrusters import ThrusterDrawing
+from buoyancy_mj.viz.sea_grid import choose_cell
 from buoyancy_mj.viz.sea_surface import SurfaceDrawing
 from buoyancy_mj.viz.sky import draw_sky
+from buoyancy_mj.viz.tendons import TendonDrawing
+from buoyancy_mj.viz.thrusters import ThrusterDrawing
 
 FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
 """Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
@@ -90,9 +92,10 @@ class Recording:
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
         length = max(vehicle.length for vehicle in vehicles)
-        self._bodies = BodyDrawing(run, length)
         self._eye = Eye(run, self._start)
+        self._bodies = BodyDrawing(run, length, choose_cell(self._eye.distance))
         self._surface = SurfaceDrawing(run.buoyancy.water, self._eye)
+        self._motes = None if self._bodies.has_surroundings else MoteDrawing(self._eye)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
@@ -130,6 +133,8 @@ class Recording:
         centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
         self._eye.draw(self._log, centres, frame.time)
         self._surface.draw(self._log, frame.time)
+        if self._motes is not None:
+            self._motes.draw(self._log)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
@@ -195,6 +200,8 @@ class Recording:
         self._eye.draw_static(self._log)
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
+        if self._motes is not None:
+            self._motes.draw_static(self._log)
         for forces in self._forces:
             forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 PIXELS = 512
 """Pixels along a side of its picture."""
-DARK = 225
+DARK = 205
 """Brightness between its lines, of 255."""
 STEPS = np.array([1.0, 2.0, 5.0, 10.0])
 

@@ -14,6 +14,8 @@ OPACITY = 0.55, 0.85
 """How little shows through the surface, 0 to 1, from above and from below."""
 LEAST = 0.10
 """Least cosine between the surface and the ray, as short waves have it on a surface that grazes."""
+AIR = 8000.0
+"""Distance over which air takes the colour of what one sees [m]."""
 WINDOW = 0.66
 """Cosine of the angle to the vertical within which the sky is seen from below (Snell)."""
 
@@ -47,10 +49,16 @@ class Shades:
 def see_through(
     colours: NDArray[np.uint32], points: NDArray[np.float64], eye: NDArray[np.float64]
 ) -> NDArray[np.uint32]:
-    """Colours (n,) of opaque points (n, 3) [m] that look as if the deep showed through them."""
+    """Colours (n,) of opaque points (n, 3) [m] that look as if the deep showed through them.
+
+    In the distance air is before them.
+    """
     surface = _to_linear(_unpack(colours)[:, :3] / 255.0)
-    behind = _to_linear(shade_depths(DAYLIGHT, points - eye))
-    return _pack(_to_screen(behind + OPACITY[0] * (surface - behind)))
+    rays = points - eye
+    behind = _to_linear(shade_depths(DAYLIGHT, rays))
+    light = behind + OPACITY[0] * (surface - behind)
+    air = 1.0 - np.exp(-np.linalg.norm(rays, axis=1, keepdims=True) / AIR)
+    return _pack(_to_screen(light + (_to_linear(np.array(DAYLIGHT.horizon)) - light) * air))
 
 
 @functools.cache

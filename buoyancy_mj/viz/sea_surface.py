@@ -13,6 +13,7 @@ from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.sea_grid import choose_cell, paint_grid
 from buoyancy_mj.viz.sea_shades import OPACITY, Shades, see_through
+from buoyancy_mj.viz.textures import texture
 
 ENTITY, FAR = "world/water", "world/water/far"
 """The surface with its waves, and still water from there to the horizon."""
@@ -48,7 +49,8 @@ class SurfaceDrawing:
         self._radius = float(radii[-1])
         self._corners = np.vstack([np.zeros((1, 3), np.float32), _place_rings(radii)])
         self._faces = join_rings(count, SPOKES)
-        far = np.geomspace(self._radius, HORIZON, 8)
+        # through the sky, without a gap
+        far = np.geomspace(self._radius, 1.1 * HORIZON, 8)
         self._far, self._far_faces = _place_rings(far), join_rings(8, SPOKES)[SPOKES:] - 1
 
         # waves fade where cells are too long for them, and towards the rim
@@ -67,15 +69,8 @@ class SurfaceDrawing:
     def draw_static(self, log: Log) -> None:
         """Draw what stays the same: triangles, and the grid on them."""
         places = self._corners[:, :2] / (2.0 * self._radius) + 0.5
-        grid = rr.Mesh3D(
-            vertex_positions=self._corners,
-            triangle_indices=self._faces,
-            vertex_texcoords=places,
-            albedo_texture=paint_grid(self._radius, self._cell),
-        )
-        # a static position would hide those of each frame
-        grid.vertex_positions = None
-        log.keep(ENTITY, grid)
+        log.keep(ENTITY, rr.Mesh3D.from_fields(triangle_indices=self._faces))
+        log.keep(ENTITY, texture(paint_grid(self._radius, self._cell), places))
         still = rr.Mesh3D.from_fields(vertex_positions=self._far, triangle_indices=self._far_faces)
         log.keep(FAR, still)
 
