@@ -83,7 +83,8 @@ class Eye:
     @property
     def offset(self) -> NDArray[np.float64]:
         """From what it looks at to the eye (3,) [m]."""
-        return self.distance * self._away
+        offset: NDArray[np.float64] = self.distance * self._away
+        return offset
 
     @property
     def position(self) -> NDArray[np.float64]:
@@ -136,7 +137,7 @@ class Eye:
 
     def _find_rise(self, up: float) -> float:
         """How much higher than what it looks at the eye stands [m], clear of the surface."""
-        depth, clear = self.level - self.middle[2], 1.2 * self.crest + 0.2 * up
+        depth, clear = self.level - float(self.middle[2]), 1.2 * self.crest + 0.2 * up
         if depth > 1.2 * up + self.crest:
             return min(self.distance * math.sin(PITCH[1]), depth - clear)
         rise = max(self.distance * math.sin(PITCH[0]), depth + clear)
@@ -165,6 +166,6 @@ def _look_along(forward: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def measure_crest(water: Water) -> float:
-    """Height of crests [m]: the sum of all waves, or two standard deviations, as higher are rare."""
+    """Height of crests [m]: of all waves at once, or two standard deviations, as more is rare."""
     amplitudes = water.rows[:, 0]
     return float(min(np.abs(amplitudes).sum(), 2.0 * math.sqrt(0.5 * (amplitudes**2).sum())))

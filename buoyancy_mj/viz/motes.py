@@ -1,4 +1,4 @@
-"""`MoteDrawing`: motes that lie still in deep water, by which motion shows where there is no floor."""
+"""`MoteDrawing`: motes that lie still in deep water, so that motion shows without a floor."""
 
 import numpy as np
 import rerun as rr

@@ -43,11 +43,12 @@ class Shades:
         """Colours (n,) as 0xRRGGBBAA, for slopes (n, 2) of the surface along x and y."""
         cosines = self._z - self._x * slopes[:, 0] - self._y * slopes[:, 1]
         steps = np.clip(cosines, 0.0, STEPS - 1.0).astype(np.int32)
-        return self._table[self._rows + steps]
+        colours: NDArray[np.uint32] = self._table[self._rows + steps]
+        return colours
 
 
 def see_through(
-    colours: NDArray[np.uint32], points: NDArray[np.float64], eye: NDArray[np.float64]
+    colours: NDArray[np.uint32], points: NDArray[np.floating], eye: NDArray[np.float64]
 ) -> NDArray[np.uint32]:
     """Colours (n,) of opaque points (n, 3) [m] that look as if the deep showed through them.
 

@@ -61,7 +61,7 @@ class SurfaceDrawing:
             Band(band.water, band.weights * rim[: len(band.weights)])
             for band in split_waves(water, cells)
         ]
-        self._centre: NDArray[np.float64] | None = None
+        self._centre = np.full(2, np.nan)
         self._drawn = self._coloured = -math.inf
         self._height = math.inf
         self._shades: Shades
@@ -103,7 +103,7 @@ class SurfaceDrawing:
     def _follow(self, log: Log) -> bool:
         """Move the sea to what the eye looks at, by whole cells; say whether it moved."""
         centre = self._cell * np.round(self._eye.middle[:2] / self._cell)
-        if self._centre is not None and np.array_equal(centre, self._centre):
+        if np.array_equal(centre, self._centre):
             return False
         self._centre = centre
         place = np.array([[*centre, self._water.level]])
@@ -129,8 +129,9 @@ class SurfaceDrawing:
         return True
 
 
-def _place_rings(radii: NDArray[np.float64]) -> NDArray[np.float32]:
+def _place_rings(radii: NDArray[np.floating]) -> NDArray[np.float32]:
     """Corners (n, 3) [m] of rings around the middle, z = 0."""
     angles = 2.0 * math.pi / SPOKES * np.arange(SPOKES)
     ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(SPOKES)], axis=-1)
-    return (radii[:, None, None] * ring).reshape(-1, 3).astype(np.float32)
+    corners: NDArray[np.float32] = (radii[:, None, None] * ring).astype(np.float32)
+    return corners.reshape(-1, 3)
