@@ -1,20 +1,19 @@
 """How the Rerun viewer is laid out for a run and for an inspection."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from buoyancy_mj.viz.log import TIMELINE
-from buoyancy_mj.viz.plots import list_plots
 
-MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
-"""Names of the tabs of plots."""
-MOST_IN_COLUMN = 6
-"""Most plots of instruments that stand in one column."""
-MOST_IN_LEGEND = 4
-"""Most lines of instruments that a legend names; more would cover the lines."""
+ROW, HEADER = 23.0, 84.0
+"""Height of a row of a text's table, and of what stands above it [pixels]."""
+WINDOW = 806.0
+"""Height of what a window of 1600 x 900 shows of the layout [pixels]."""
+MOST_TEXT = 0.5
+"""Greatest part of it that texts take."""
 
 
 def run_blueprint(
@@ -23,8 +22,8 @@ def run_blueprint(
     size: float,
     *,
     texts: Sequence[str],
-    vehicles: Sequence[str],
-    instruments: Mapping[str, Sequence[str]],
+    rows: int,
+    tabs: Sequence[rrb.Container],
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
@@ -33,25 +32,17 @@ def run_blueprint(
         look_at: point at which it looks (3,) [m].
         size: length of what it shows [m], a few of which lie between the eye and that point.
         texts: entities of the texts.
-        vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
-        instruments: entities of each plot of sensors and actuators, by its title; they have a tab
-            of their own.
+        rows: number of rows of the longest table in a text, all of which are to be seen.
+        tabs: the plots.
     """
     world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
     below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
-    tabs = [rrb.Vertical(*_plot_views(name), name=name) for name in vehicles]
-    if not tabs:
-        tabs = [rrb.Vertical(*_plot_views(), name=MOTION)]
-    if instruments:
-        views = [_instrument_view(title, paths) for title, paths in instruments.items()]
-        columns = 1 if len(views) <= MOST_IN_COLUMN else 2
-        tabs.append(rrb.Grid(*views, grid_columns=columns, name=INSTRUMENTS))
-    plots = rrb.Tabs(*tabs) if len(tabs) > 1 else tabs[0]
+    text = min((ROW * rows + HEADER) / WINDOW, MOST_TEXT)
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(world, below, row_shares=[4, 1]),
-            plots,
-            column_shares=[3, 2],
+            rrb.Vertical(world, below, row_shares=[1.0 - text, text]),
+            rrb.Tabs(*tabs),
+            column_shares=[1, 1],
         ),
         rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
         *_side_panels(),
@@ -90,38 +81,6 @@ def _world_view(
         background=rrb.Background(color=[24, 30, 40]),
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(position=eye, look_target=look_at, eye_up=[0, 0, 1]),
-    )
-
-
-def _plot_views(vehicle: str = "") -> list[rrb.TimeSeriesView]:
-    """The plots of a vehicle; '' is the only one."""
-    return [_plot_view(title, contents) for title, contents in list_plots(vehicle).items()]
-
-
-def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
-    """A plot of the entities in `contents`; a leading '-' leaves an entity out."""
-    has_hulls = any(path.endswith("/volume/**") for path in contents)
-    return rrb.TimeSeriesView(
-        origin="plots",
-        contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
-        name=title,
-        # a legend of all hulls would cover their lines
-        plot_legend=_legend(visible=not has_hulls),
-    )
-
-
-def _legend(*, visible: bool) -> rrb.PlotLegend:
-    """The legend of a plot, where lines are covered least."""
-    return rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=visible)
-
-
-def _instrument_view(title: str, paths: Sequence[str]) -> rrb.TimeSeriesView:
-    """A plot of numbers of one kind and unit."""
-    return rrb.TimeSeriesView(
-        origin="instruments",
-        contents=[f"+ {path}" for path in paths],
-        name=title,
-        plot_legend=_legend(visible=len(paths) <= MOST_IN_LEGEND),
     )
 
 
