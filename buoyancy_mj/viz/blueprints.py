@@ -6,8 +6,14 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
+from buoyancy_mj.viz import sea_surface, sky
+from buoyancy_mj.viz.eye import ENTITY, Eye
 from buoyancy_mj.viz.log import TIMELINE
 
+BACKGROUND = (24, 30, 40)
+"""Colour behind an inspection."""
+SURROUNDINGS = (sky.ENTITY, sea_surface.ENTITY, sea_surface.FAR, ENTITY)
+"""Entities that a pointer passes over."""
 ROW, HEADER = 23.0, 84.0
 """Height of a row of a text's table, and of what stands above it [pixels]."""
 WINDOW = 806.0
@@ -18,8 +24,7 @@ MOST_TEXT = 0.5
 
 def run_blueprint(
     title: str,
-    look_at: NDArray[np.float64],
-    size: float,
+    eye: Eye,
     *,
     texts: Sequence[str],
     rows: int,
@@ -29,13 +34,12 @@ def run_blueprint(
 
     Args:
         title: name of the view of the world.
-        look_at: point at which it looks (3,) [m].
-        size: length of what it shows [m], a few of which lie between the eye and that point.
+        eye: whence it looks.
         texts: entities of the texts.
         rows: number of rows of the longest table in a text, all of which are to be seen.
         tabs: the plots.
     """
-    world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
+    world = _world_view(title, eye.middle, eye.position, followed=ENTITY)
     below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
     text = min((ROW * rows + HEADER) / WINDOW, MOST_TEXT)
     return rrb.Blueprint(
@@ -72,15 +76,23 @@ def inspection_blueprint(
 
 
 def _world_view(
-    title: str, look_at: NDArray[np.float64], eye: NDArray[np.float64]
+    title: str,
+    look_at: NDArray[np.float64],
+    eye: NDArray[np.float64],
+    *,
+    followed: str | None = None,
 ) -> rrb.Spatial3DView:
-    """A view in 3D from `eye` towards `look_at`, (3,) [m]."""
+    """A view in 3D from `eye` towards `look_at`, (3,) [m], which follows an entity."""
     return rrb.Spatial3DView(
         origin="world",
         name=title,
-        background=rrb.Background(color=[24, 30, 40]),
+        background=rrb.Background(color=BACKGROUND),
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=eye, look_target=look_at, eye_up=[0, 0, 1]),
+        eye_controls=rrb.EyeControls3D(
+            position=eye, look_target=look_at, eye_up=[0, 0, 1], tracking_entity=followed
+        ),
+        # what is everywhere is not to be pointed at
+        overrides={entity: rrb.EntityBehavior(interactive=False) for entity in SURROUNDINGS},
     )
 
 

@@ -1,20 +1,24 @@
-"""`BodyDrawing`: the bodies of a run in its recording, what of them is wet, and their waterline."""
+"""`BodyDrawing`: the bodies of a run in its recording, tinted by depth, and their waterline."""
+
+import math
 
 import numpy as np
 import rerun as rr
-from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.submersion.wetted_surface import cut_waterline
+from buoyancy_mj.viz.depth_tint import DepthTint
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
 from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 
-WET = np.array([25, 90, 190])
-"""Colour that water adds to a wet geom."""
+TURN = [1, 2, 3, 0]
+"""Order of a quaternion of MuJoCo as the viewer takes it, the scalar last."""
 WATERLINE = (255, 255, 255)
+RATE = 30.0
+"""Times that the waterline is drawn in a second [Hz], at most: as often as the sea."""
 
 
 class BodyDrawing:
@@ -26,9 +30,6 @@ class BodyDrawing:
     """
 
     def __init__(self, run: Run, size: float) -> None:
-        self.wet: dict[int, NDArray[np.bool_]] = {}
-        """Which vertices (n,) of each moving geom are wet, by its index, as last drawn."""
-        self._whole: dict[int, bool | None] = {}
         self._run = run
         self._size = size
         self._geoms = list(find_visible_geoms(run.model))
@@ -36,8 +37,13 @@ class BodyDrawing:
         self._foils = list(find_visible_foils(run.model))
         bodies = {geom.body for geom in self._moving} | {one.foil.body for one in self._foils}
         self._bodies = {body: self._body_entity(body) for body in sorted(bodies)}
-        self._colours = {geom.geom: _mix_colours(geom) for geom in self._moving}
-        self._entities = {geom.geom: self._geom_entity(geom) for geom in self._moving}
+        self._tint = DepthTint(
+            run.buoyancy.water,
+            np.array([geom.geom for geom in self._moving], int),
+            [self._geom_entity(geom) for geom in self._moving],
+            np.array([geom.colour for geom in self._moving], np.uint8).reshape(-1, 4),
+        )
+        self._due = -math.inf
 
     def draw_static(self, log: Log) -> None:
         """Draw all geoms, and foils that are sites, in the frames of their bodies."""
@@ -59,14 +65,15 @@ class BodyDrawing:
         log.keep("world/waterline", rr.LineStrips3D.from_fields(colors=[WATERLINE], radii=[radius]))
 
     def draw(self, log: Log, frame: Frame) -> None:
-        """Draw one frame: the poses of bodies, what of them is wet, and the waterline."""
+        """Draw one frame: the poses of bodies, how deep they are, and the waterline."""
         data = frame.data
         for body, entity in self._bodies.items():
-            # rotations by columns, as the viewer takes them
-            columns = data.xmat[body].reshape(3, 3).T.reshape(1, 9)
-            log.draw(entity, rr.Transform3D, translation=data.xpos[body][None], mat3x3=columns)
-        self._draw_wetness(log, frame)
-        self._draw_waterline(log, frame)
+            turn = data.xquat[body][None, TURN]
+            log.draw(entity, rr.Transform3D, translation=data.xpos[body][None], quaternion=turn)
+        self._tint.draw(log, frame)
+        if frame.time >= self._due:
+            self._due = frame.time + 1.0 / RATE - 1e-6
+            self._draw_waterline(log, frame)
 
     def _draw_foil(self, log: Log, visible: VisibleFoil) -> None:
         """Draw a foil that is a site in the frame of its body."""
@@ -80,42 +87,6 @@ class BodyDrawing:
         )
         log.keep(entity, plate)
         log.keep(entity, rr.Transform3D(translation=foil.middle, mat3x3=foil.body_from_foil))
-
-    def _draw_wetness(self, log: Log, frame: Frame) -> None:
-        """Colour the geoms of which other vertices are wet than in the last frame."""
-        uncut = self._uncut_hulls(frame)
-        for geom in self._moving:
-            whole = uncut.get(geom.geom)
-            if whole is not None and whole is self._whole.get(geom.geom):
-                continue
-            self._whole[geom.geom] = whole
-            if whole is not None:
-                wet = np.full(len(geom.vertices), whole)
-            else:
-                wet = self._find_wet_vertices(geom, frame)
-            if geom.geom in self.wet and np.array_equal(wet, self.wet[geom.geom]):
-                continue
-            self.wet[geom.geom] = wet
-            dry, dyed = self._colours[geom.geom]
-            colours = np.where(wet, dyed, dry)
-            log.draw(self._entities[geom.geom], rr.Mesh3D, vertex_colors=colours)
-
-    def _uncut_hulls(self, frame: Frame) -> dict[int, bool]:
-        """Whether each geom that the surface does not cut is wet, by its index."""
-        loads = frame.loads
-        is_wet, areas = (loads.hull.volume > 0.0).tolist(), loads.waterplane_area.tolist()
-        return {
-            hull.geom: wet
-            for hull, wet, area in zip(self._run.buoyancy.hulls, is_wet, areas, strict=True)
-            if area == 0.0
-        }
-
-    def _find_wet_vertices(self, geom: VisibleGeom, frame: Frame) -> NDArray[np.bool_]:
-        """Which vertices (n,) of a geom are under water."""
-        world_from_geom = frame.data.geom_xmat[geom.geom].reshape(3, 3)
-        points = geom.vertices @ world_from_geom.T + frame.data.geom_xpos[geom.geom]
-        wet: NDArray[np.bool_] = self._run.buoyancy.water.depth(points, frame.time) > 0.0
-        return wet
 
     def _draw_waterline(self, log: Log, frame: Frame) -> None:
         """Draw the waterline on all hulls that the surface cuts."""
@@ -143,10 +114,3 @@ class BodyDrawing:
         """The entity of a geom."""
         name = geom_name(self._run.model, geom.geom)
         return f"{self._body_entity(geom.body)}/{rr.escape_entity_path_part(name)}"
-
-
-def _mix_colours(geom: VisibleGeom) -> NDArray[np.uint32]:
-    """The colours of a geom where it is dry and where it is wet (2,), as 0xRRGGBBAA."""
-    water = np.append(WET, geom.colour[3])
-    dyed = (0.45 * geom.colour + 0.55 * water).astype(np.uint8)
-    return np.array([geom.colour, dyed], np.uint8).view(">u4").astype(np.uint32).ravel()

@@ -19,26 +19,25 @@ from buoyancy_mj.viz import instruments, plots, tabs
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
+from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.forces import ForceDrawing
-from buoyancy_mj.viz.framing import find_middle, measure_extent
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.plot_views import Times, lay_out_spectra, lay_out_tabs
 from buoyancy_mj.viz.rrd import RrdFile
+from buoyancy_mj.viz.sea_surface import SurfaceDrawing
+from buoyancy_mj.viz.sky import draw_sky
 from buoyancy_mj.viz.spectra import Spectra
 from buoyancy_mj.viz.tendons import TendonDrawing
 from buoyancy_mj.viz.texts import write_summary
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
 from buoyancy_mj.viz.viewers import NOBODY, Viewers
 from buoyancy_mj.viz.watch import Watch
-from buoyancy_mj.viz.water_surface import SurfaceDrawing
 
 FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
 """Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
 more of its work."""
 EXPECTED_ROWS = 12
 """Rows of a summary that there is not yet."""
-CLOSER = 0.6
-"""Distance of the eye from several vehicles over that from one as long as all of them."""
 
 
 class Recording:
@@ -95,10 +94,10 @@ class Recording:
         vehicles = run.vehicles.values()
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
-        self._size = measure_extent(vehicles, self._start)
         length = max(vehicle.length for vehicle in vehicles)
         self._bodies = BodyDrawing(run, length)
-        self._surface = SurfaceDrawing(run.buoyancy.water, self._size)
+        self._eye = Eye(run, self._start)
+        self._surface = SurfaceDrawing(run.buoyancy.water, self._eye)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
@@ -143,8 +142,9 @@ class Recording:
 
         # the picture
         self._bodies.draw(self._log, frame)
-        middle = find_middle(one.centre_of_mass for one in frame.vehicles.values())
-        self._surface.draw(self._log, middle, frame.time)
+        centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
+        self._eye.draw(self._log, centres, frame.time)
+        self._surface.draw(self._log, frame.time)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
@@ -204,6 +204,8 @@ class Recording:
         self._lay_out()
         self._log.keep("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._log_text("scene", f"```toml\n{run.text}\n```")
+        draw_sky(self._log)
+        self._eye.draw_static(self._log)
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
         for forces in self._forces:
@@ -228,14 +230,6 @@ class Recording:
             times: what the run spans; None where that is not known.
         """
         run, extents = self.run, self._log.extents
-        vehicles = run.vehicles.values()
-        middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
-        # at the surface over the vehicles, or under it where they are deep
-        reach = 0.5 * self._size
-        height = np.clip(run.buoyancy.water.level, middle[2] - reach, middle[2] + reach)
-        look_at = np.array([*middle[:2], height])
-        # vehicles apart from each other fill less of the picture than one
-        size = CLOSER * self._size if self._several else self._size
         vehicles_own = {
             name: tabs.list_vehicle_tabs(vehicle, name, run.buoyancy.causes, extents)
             for vehicle, name in self._vehicles()
@@ -244,7 +238,7 @@ class Recording:
         laid = lay_out_tabs(vehicles_own, shared, extents, times)
         if self._spectra.known:
             laid.append(lay_out_spectra(self._spectra.entities))
-        layout = run_blueprint(run.title, look_at, size, texts=self._texts, rows=rows, tabs=laid)
+        layout = run_blueprint(run.title, self._eye, texts=self._texts, rows=rows, tabs=laid)
         self._write()
         for stream in self._streams:
             stream.send_blueprint(layout)
