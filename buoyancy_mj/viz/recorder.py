@@ -76,6 +76,8 @@ class Recorder:
     ) -> None:
         self.paths: tuple[Path, ...] = ()
         """Where the files are, once they are closed."""
+        self.page: str | None = None
+        """Address of the page that is served; None for none."""
         self._rate = None if rate is None else read_number(RecordingError, "rate", rate, above=0.0)
         self._begin: float | None = None
         self._last = -math.inf
@@ -92,6 +94,8 @@ class Recorder:
             viewers=viewers,
             has_summary=False,
         )
+        if self._sinks.recording is not None:
+            self.page = self._sinks.recording.page
 
     def __enter__(self) -> "Recorder":
         return self

@@ -35,7 +35,7 @@ def choose_range(low: float, high: float, pixels: float) -> tuple[float, float]:
     """
     middle, span = 0.5 * (low + high), high - low
     # what hardly changes is a level line, not noise that fills the plot
-    least = max(1e-4, 1e-3 * abs(middle))
+    least = max(1e-4, 1e-3 * abs(middle)) if middle or span else 1.0
     half = 0.5 * max(span, least) / (1.0 - 2.0 * MARGIN)
     low, high = middle - half, middle + half
     span = high - low
@@ -57,11 +57,13 @@ def choose_end(begin: float, end: float, free: float, pixels: float) -> float:
     """
     # a run of one frame has an axis all the same
     span = max(end - begin, 1e-3) / (1.0 - free)
-    fitting = (step for step in TIME_STEPS if span / step * TEXT_WIDTH <= pixels)
-    step = next(fitting, TIME_STEPS[-1])
-    last = max(math.ceil(begin / step) + LABELS - 1, math.floor((begin + span) / step))
-    # the last label is not cut
-    return max(begin + span, (last + 0.4) * step)
+    for step in TIME_STEPS:
+        last = max(math.ceil(begin / step) + LABELS - 1, math.floor((begin + span) / step))
+        # the last label is not cut
+        high = max(begin + span, (last + 0.4) * step)
+        if (high - begin) / step * TEXT_WIDTH <= pixels:
+            break
+    return high
 
 
 def _widen(low: float, high: float, step: float) -> tuple[float, float]:
