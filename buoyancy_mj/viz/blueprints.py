@@ -1,61 +1,51 @@
 """How the Rerun viewer is laid out for a run and for an inspection."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from buoyancy_mj.viz import motes, sea_surface, sky
-from buoyancy_mj.viz.eye import ENTITY, Eye
+from buoyancy_mj.viz.eye import ENTITY
 from buoyancy_mj.viz.log import TIMELINE
-from buoyancy_mj.viz.plots import list_plots
+from buoyancy_mj.viz.surroundings import Surroundings
 
 BACKGROUND = (24, 30, 40)
 """Colour behind an inspection."""
-SURROUNDINGS = (sky.ENTITY, sea_surface.ENTITY, sea_surface.FAR, motes.ENTITY, ENTITY)
-"""Entities that a pointer passes over."""
-MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
-"""Names of the tabs of plots."""
-MOST_IN_COLUMN = 6
-"""Most plots of instruments that stand in one column."""
-MOST_IN_LEGEND = 4
-"""Most lines of instruments that a legend names; more would cover the lines."""
+ROW, HEADER = 23.0, 84.0
+"""Height of a row of a text's table, and of what stands above it [pixels]."""
+WINDOW = 806.0
+"""Height of what a window of 1600 x 900 shows of the layout [pixels]."""
+MOST_TEXT = 0.5
+"""Greatest part of it that texts take."""
 
 
 def run_blueprint(
     title: str,
-    eye: Eye,
+    surroundings: Surroundings,
     *,
     texts: Sequence[str],
-    vehicles: Sequence[str],
-    instruments: Mapping[str, Sequence[str]],
+    rows: int,
+    tabs: Sequence[rrb.Container],
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
     Args:
         title: name of the view of the world.
-        eye: whence it looks.
+        surroundings: what is seen around the vehicles, and whence.
         texts: entities of the texts.
-        vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
-        instruments: entities of each plot of sensors and actuators, by its title; they have a tab
-            of their own.
+        rows: number of rows of the longest table in a text, all of which are to be seen.
+        tabs: the plots.
     """
-    world = _world_view(title, eye.middle, eye.position, followed=ENTITY)
+    eye, passive = surroundings.eye, surroundings.passive
+    world = _world_view(title, eye.middle, eye.position, followed=ENTITY, passive=passive)
     below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
-    tabs = [rrb.Vertical(*_plot_views(name), name=name) for name in vehicles]
-    if not tabs:
-        tabs = [rrb.Vertical(*_plot_views(), name=MOTION)]
-    if instruments:
-        views = [_instrument_view(title, paths) for title, paths in instruments.items()]
-        columns = 1 if len(views) <= MOST_IN_COLUMN else 2
-        tabs.append(rrb.Grid(*views, grid_columns=columns, name=INSTRUMENTS))
-    plots = rrb.Tabs(*tabs) if len(tabs) > 1 else tabs[0]
+    text = min((ROW * rows + HEADER) / WINDOW, MOST_TEXT)
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(world, below, row_shares=[4, 1]),
-            plots,
-            column_shares=[3, 2],
+            rrb.Vertical(world, below, row_shares=[1.0 - text, text]),
+            rrb.Tabs(*tabs),
+            column_shares=[1, 1],
         ),
         rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
         *_side_panels(),
@@ -90,8 +80,17 @@ def _world_view(
     eye: NDArray[np.float64],
     *,
     followed: str | None = None,
+    passive: Sequence[str] = (),
 ) -> rrb.Spatial3DView:
-    """A view in 3D from `eye` towards `look_at`, (3,) [m], which follows an entity."""
+    """A view in 3D from `eye` towards `look_at`, (3,) [m].
+
+    Args:
+        title: its name.
+        look_at: a point in the middle of it.
+        eye: where it is seen from.
+        followed: the entity that it follows.
+        passive: entities that a pointer passes over.
+    """
     return rrb.Spatial3DView(
         origin="world",
         name=title,
@@ -100,40 +99,7 @@ def _world_view(
         eye_controls=rrb.EyeControls3D(
             position=eye, look_target=look_at, eye_up=[0, 0, 1], tracking_entity=followed
         ),
-        # what is everywhere is not to be pointed at
-        overrides={entity: rrb.EntityBehavior(interactive=False) for entity in SURROUNDINGS},
-    )
-
-
-def _plot_views(vehicle: str = "") -> list[rrb.TimeSeriesView]:
-    """The plots of a vehicle; '' is the only one."""
-    return [_plot_view(title, contents) for title, contents in list_plots(vehicle).items()]
-
-
-def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
-    """A plot of the entities in `contents`; a leading '-' leaves an entity out."""
-    has_hulls = any(path.endswith("/volume/**") for path in contents)
-    return rrb.TimeSeriesView(
-        origin="plots",
-        contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
-        name=title,
-        # a legend of all hulls would cover their lines
-        plot_legend=_legend(visible=not has_hulls),
-    )
-
-
-def _legend(*, visible: bool) -> rrb.PlotLegend:
-    """The legend of a plot, where lines are covered least."""
-    return rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=visible)
-
-
-def _instrument_view(title: str, paths: Sequence[str]) -> rrb.TimeSeriesView:
-    """A plot of numbers of one kind and unit."""
-    return rrb.TimeSeriesView(
-        origin="instruments",
-        contents=[f"+ {path}" for path in paths],
-        name=title,
-        plot_legend=_legend(visible=len(paths) <= MOST_IN_LEGEND),
+        overrides={entity: rrb.EntityBehavior(interactive=False) for entity in passive},
     )
 
 

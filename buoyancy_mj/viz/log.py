@@ -45,6 +45,8 @@ class Log:
         self._streams = streams
         self._rows: dict[tuple[Any, ...], _Rows] = {}
         self._lines: dict[tuple[str, ...], _Lines] = {}
+        self.extents: dict[str, tuple[float, float]] = {}
+        """Least and greatest finite value of each line that has been sent, by its entity."""
 
     def keep(self, entity: str, *data: Any) -> None:
         """Log what stays the same."""
@@ -97,8 +99,16 @@ class Log:
         for entities, lines in self._lines.items():
             times = index(lines.times)
             for entity, values in zip(entities, np.transpose(lines.values), strict=True):
+                self._measure(entity, values)
                 self._send(entity, times, rr.Scalars.columns(scalars=values))
         self._rows, self._lines = {}, {}
+
+    def _measure(self, entity: str, values: NDArray[np.float64]) -> None:
+        """Widen the extent of a line by new values (n,)."""
+        finite = values[np.isfinite(values)]
+        if len(finite):
+            low, high = self.extents.get(entity, (np.inf, -np.inf))
+            self.extents[entity] = min(low, float(finite.min())), max(high, float(finite.max()))
 
     def _send(self, entity: str, times: rr.TimeColumn, columns: Iterable[Any]) -> None:
         """Send one entity to all streams."""

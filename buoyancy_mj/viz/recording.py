@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import rerun as rr
 
 from buoyancy_mj.errors import BuoyancyWarning
@@ -15,25 +14,27 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run, place_at_start
 from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.vehicle.instruments.instruments import Instruments
-from buoyancy_mj.viz import instruments, plots
+from buoyancy_mj.viz import instruments, plots, tabs
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
-from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.forces import ForceDrawing
-from buoyancy_mj.viz.live_viewer import open_viewer
 from buoyancy_mj.viz.log import Log
-from buoyancy_mj.viz.motes import MoteDrawing
+from buoyancy_mj.viz.plot_views import Times, lay_out_spectra, lay_out_tabs
 from buoyancy_mj.viz.rrd import RrdFile
-from buoyancy_mj.viz.sea_grid import choose_cell
-from buoyancy_mj.viz.sea_surface import SurfaceDrawing
-from buoyancy_mj.viz.sky import draw_sky
+from buoyancy_mj.viz.spectra import Spectra
+from buoyancy_mj.viz.surroundings import Surroundings
 from buoyancy_mj.viz.tendons import TendonDrawing
+from buoyancy_mj.viz.texts import write_summary
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
+from buoyancy_mj.viz.viewers import NOBODY, Viewers
+from buoyancy_mj.viz.watch import Watch
 
 FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
 """Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
 more of its work."""
+EXPECTED_ROWS = 12
+"""Rows of a summary that there is not yet."""
 
 
 class Recording:
@@ -47,11 +48,11 @@ class Recording:
     Args:
         run: the run: a `Simulation`, or a loop of somebody's own.
         path: the file; None for none.
-        live: whether to stream to a Rerun viewer, which is started if none runs.
+        viewers: where the run is watched while it goes on.
         has_summary: whether `close` will be given a summary.
 
     Raises:
-        RecordingError: the file cannot be written, or no viewer could be started.
+        RecordingError: the file cannot be written, or no viewer could be reached or started.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class Recording:
         run: Run,
         path: Path | None = None,
         *,
-        live: bool = False,
+        viewers: Viewers = NOBODY,
         has_summary: bool = True,
     ) -> None:
         self.run = run
@@ -67,16 +68,15 @@ class Recording:
         self._texts = ("summary", "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
-        self._every = LIVE_EVERY if live else FLUSH_EVERY
+        self._every = LIVE_EVERY if viewers else FLUSH_EVERY
         self._streams: list[rr.RecordingStream] = []
         self._file: RrdFile | None = None
         if path is not None:
             self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
             self._file = RrdFile(path, self._streams[-1])
         try:
-            if live:
-                self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
-                open_viewer(self._streams[-1])
+            self._watch = Watch(viewers, identity)
+            self._streams += self._watch.streams
             self._begin()
         except BaseException:
             # nothing of a recording that never began
@@ -92,19 +92,19 @@ class Recording:
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
         length = max(vehicle.length for vehicle in vehicles)
-        self._eye = Eye(run, self._start)
-        self._bodies = BodyDrawing(run, length, choose_cell(self._eye.distance))
-        self._surface = SurfaceDrawing(run.buoyancy.water, self._eye)
-        self._motes = None if self._bodies.has_surroundings else MoteDrawing(self._eye)
+        self._surroundings = Surroundings(run, self._start)
+        self._bodies = BodyDrawing(run, length)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
         self._instruments = Instruments(run.model)
         self._entities = tuple(map(instruments.entity, self._instruments.channels))
+        self._spectra = Spectra(self._vehicles())
         self._forces = [
             ForceDrawing(vehicle, name, run.buoyancy.causes) for vehicle, name in self._vehicles()
         ]
         self._lines: tuple[str, ...] | None = None
+        self._times: Times | None = None
         self._draw_static()
         self._sent = time.monotonic()
 
@@ -117,6 +117,11 @@ class Recording:
                 pass
 
     @property
+    def page(self) -> str | None:
+        """Address of the page that is served; None for none."""
+        return self._watch.page
+
+    @property
     def closed(self) -> bool:
         """Whether the file has its name already."""
         return self._file is not None and self._file.closed
@@ -127,14 +132,13 @@ class Recording:
         Raises:
             RecordingError: the disk is full or the file was taken away; what was written stays.
         """
-        # the picture
+        begin = frame.time if self._times is None else self._times[0]
+        self._times = (begin, frame.time)
         self._log.time = frame.time
+
+        # the picture
         self._bodies.draw(self._log, frame)
-        centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
-        self._eye.draw(self._log, centres, frame.time)
-        self._surface.draw(self._log, frame.time)
-        if self._motes is not None:
-            self._motes.draw(self._log)
+        self._surroundings.draw(self._log, frame)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
@@ -150,6 +154,7 @@ class Recording:
             )
         self._log.plot(self._lines, [value for lines in values for value in lines.values()])
         self._log.plot(self._entities, self._instruments.read(frame.data))
+        self._spectra.add(frame)
         if time.monotonic() - self._sent >= self._every:
             self._log.send()
             self._write()
@@ -169,9 +174,14 @@ class Recording:
         Raises:
             RecordingError: the last data could not be written.
         """
+        rows = EXPECTED_ROWS
         if summary is not None:
-            self._log_text("summary", _summary_text(summary))
+            text, rows = write_summary(summary)
+            self._log_text("summary", text)
         self._log.send()
+        if self._spectra.known:
+            self._spectra.draw(self._log)
+        self._lay_out(rows, self._times)
         try:
             for stream in self._streams:
                 stream.flush(timeout_sec=60.0)
@@ -185,23 +195,11 @@ class Recording:
     def _draw_static(self) -> None:
         """Draw what stays the same in all frames."""
         run, channels = self.run, self._instruments.channels
-        layout = run_blueprint(
-            run.title,
-            self._eye,
-            texts=self._texts,
-            vehicles=self._several,
-            instruments=instruments.list_plots(channels),
-        )
-        for stream in self._streams:
-            stream.send_blueprint(layout)
+        self._lay_out()
         self._log.keep("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._log_text("scene", f"```toml\n{run.text}\n```")
-        draw_sky(self._log)
-        self._eye.draw_static(self._log)
+        self._surroundings.draw_static(self._log)
         self._bodies.draw_static(self._log)
-        self._surface.draw_static(self._log)
-        if self._motes is not None:
-            self._motes.draw_static(self._log)
         for forces in self._forces:
             forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)
@@ -216,6 +214,31 @@ class Recording:
             self._log.keep(entity, style)
         self._write()
 
+    def _lay_out(self, rows: int = EXPECTED_ROWS, times: Times | None = None) -> None:
+        """Lay out the viewer, for what is known of the lines by now.
+
+        Args:
+            rows: number of rows of the summary.
+            times: what the run spans; None where that is not known.
+        """
+        run, extents = self.run, self._log.extents
+        vehicles_own = {
+            name: tabs.list_vehicle_tabs(vehicle, name, run.buoyancy.causes, extents)
+            for vehicle, name in self._vehicles()
+        }
+        shared = tabs.list_instrument_tabs(self._instruments.channels)
+        laid = lay_out_tabs(vehicles_own, shared, extents, times)
+        if self._spectra.known:
+            laid.append(lay_out_spectra(self._spectra.entities))
+        layout = run_blueprint(
+            run.title, self._surroundings, texts=self._texts, rows=rows, tabs=laid
+        )
+        self._write()
+        for stream in self._streams:
+            stream.send_blueprint(layout)
+        if self._file is not None:
+            self._file.write_layout()
+
     def _vehicles(self) -> Iterator[tuple[Vehicle, str]]:
         """Each vehicle, and what tells it from others: '' for the only one."""
         for name, vehicle in self.run.vehicles.items():
@@ -229,11 +252,3 @@ class Recording:
         """Write what has been logged to the file."""
         if self._file is not None:
             self._file.write()
-
-
-def _summary_text(summary: Summary) -> str:
-    """The summary as a Markdown table."""
-    names = list(summary.vehicles) if len(summary.vehicles) > 1 else [""]
-    lines = [(summary.scene, *names), ("---",) * (1 + len(names)), *summary.rows()]
-    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    return f"{table}\n{summary.caption}\n" if len(names) > 1 else table

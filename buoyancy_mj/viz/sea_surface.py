@@ -41,7 +41,8 @@ class SurfaceDrawing:
 
     def __init__(self, water: Water, eye: Eye) -> None:
         self._water, self._eye = water, eye
-        self._cell = choose_cell(eye.distance)
+        self.cell = choose_cell(eye.distance)
+        """Side of a cell of the grid on it [m]."""
         self._step = 2.0 ** math.floor(math.log2(eye.distance / FINE))
         growth = 1.0 + 2.0 * math.pi / SPOKES
         count = math.ceil(math.log(OUTER / INNER) / math.log(growth)) + 1
@@ -70,7 +71,7 @@ class SurfaceDrawing:
         """Draw what stays the same: triangles, and the grid on them."""
         places = self._corners[:, :2] / (2.0 * self._radius) + 0.5
         log.keep(ENTITY, rr.Mesh3D.from_fields(triangle_indices=self._faces))
-        log.keep(ENTITY, texture(paint_grid(self._radius, self._cell), places))
+        log.keep(ENTITY, texture(paint_grid(self._radius, self.cell), places))
         still = rr.Mesh3D.from_fields(vertex_positions=self._far, triangle_indices=self._far_faces)
         log.keep(FAR, still)
 
@@ -102,7 +103,7 @@ class SurfaceDrawing:
 
     def _follow(self, log: Log) -> bool:
         """Move the sea to what the eye looks at, by whole cells; say whether it moved."""
-        centre = self._cell * np.round(self._eye.middle[:2] / self._cell)
+        centre = self.cell * np.round(self._eye.middle[:2] / self.cell)
         if np.array_equal(centre, self._centre):
             return False
         self._centre = centre
