@@ -7,6 +7,7 @@ import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
 from buoyancy_mj.viz.eye import ENTITY
+from buoyancy_mj.viz.legend import Legend
 from buoyancy_mj.viz.log import TIMELINE
 from buoyancy_mj.viz.surroundings import Surroundings
 
@@ -14,6 +15,8 @@ BACKGROUND = (24, 30, 40)
 """Colour behind an inspection."""
 ROW, HEADER = 23.0, 84.0
 """Height of a row of a text's table, and of what stands above it [pixels]."""
+LEGEND_ROW = 32.0
+"""Height of a row of the legend [pixels]."""
 WINDOW = 806.0
 """Height of what a window of 1600 x 900 shows of the layout [pixels]."""
 MOST_TEXT = 0.5
@@ -23,6 +26,7 @@ MOST_TEXT = 0.5
 def run_blueprint(
     title: str,
     surroundings: Surroundings,
+    legend: Legend,
     *,
     texts: Sequence[str],
     rows: int,
@@ -33,6 +37,7 @@ def run_blueprint(
     Args:
         title: name of the view of the world.
         surroundings: what is seen around the vehicles, and whence.
+        legend: what arrows mean.
         texts: entities of the texts.
         rows: number of rows of the longest table in a text, all of which are to be seen.
         tabs: the plots.
@@ -41,9 +46,10 @@ def run_blueprint(
     world = _world_view(title, eye.middle, eye.position, followed=ENTITY, passive=passive)
     below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
     text = min((ROW * rows + HEADER) / WINDOW, MOST_TEXT)
+    names = LEGEND_ROW * legend.rows / WINDOW
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(world, below, row_shares=[1.0 - text, text]),
+            rrb.Vertical(world, legend.view(), below, row_shares=[1.0 - text - names, names, text]),
             rrb.Tabs(*tabs),
             column_shares=[1, 1],
         ),

@@ -19,6 +19,7 @@ from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
 from buoyancy_mj.viz.forces import ForceDrawing
+from buoyancy_mj.viz.legend import Legend
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.plot_views import Times, lay_out_spectra, lay_out_tabs
 from buoyancy_mj.viz.rrd import RrdFile
@@ -93,6 +94,7 @@ class Recording:
         self._start = place_at_start(run)
         length = max(vehicle.length for vehicle in vehicles)
         self._surroundings = Surroundings(run, self._start)
+        self._legend = Legend(run, self._surroundings.cell)
         self._bodies = BodyDrawing(run, length)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
@@ -203,6 +205,7 @@ class Recording:
         for forces in self._forces:
             forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)
+        self._legend.draw_static(self._log)
 
         # the style of each line
         causes = run.buoyancy.causes
@@ -231,7 +234,12 @@ class Recording:
         if self._spectra.known:
             laid.append(lay_out_spectra(self._spectra.entities))
         layout = run_blueprint(
-            run.title, self._surroundings, texts=self._texts, rows=rows, tabs=laid
+            run.title,
+            self._surroundings,
+            self._legend,
+            texts=self._texts,
+            rows=rows,
+            tabs=laid,
         )
         self._write()
         for stream in self._streams:

@@ -11,7 +11,7 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz import sky
 from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.log import Log
-from buoyancy_mj.viz.sea_grid import choose_cell, paint_grid
+from buoyancy_mj.viz.sea_grid import DARK, paint_grid
 from buoyancy_mj.viz.sea_shades import OPACITY, Shades, see_through
 from buoyancy_mj.viz.textures import texture
 
@@ -37,12 +37,11 @@ class SurfaceDrawing:
     Args:
         water: the sea.
         eye: who looks at it.
+        cell: side of a cell of the grid that lies on it [m].
     """
 
-    def __init__(self, water: Water, eye: Eye) -> None:
-        self._water, self._eye = water, eye
-        self.cell = choose_cell(eye.distance)
-        """Side of a cell of the grid on it [m]."""
+    def __init__(self, water: Water, eye: Eye, cell: float) -> None:
+        self._water, self._eye, self._cell = water, eye, cell
         self._step = 2.0 ** math.floor(math.log2(eye.distance / FINE))
         growth = 1.0 + 2.0 * math.pi / SPOKES
         count = math.ceil(math.log(OUTER / INNER) / math.log(growth)) + 1
@@ -71,7 +70,7 @@ class SurfaceDrawing:
         """Draw what stays the same: triangles, and the grid on them."""
         places = self._corners[:, :2] / (2.0 * self._radius) + 0.5
         log.keep(ENTITY, rr.Mesh3D.from_fields(triangle_indices=self._faces))
-        log.keep(ENTITY, texture(paint_grid(self._radius, self.cell), places))
+        log.keep(ENTITY, texture(paint_grid(self._radius, self._cell), places))
         still = rr.Mesh3D.from_fields(vertex_positions=self._far, triangle_indices=self._far_faces)
         log.keep(FAR, still)
 
@@ -103,7 +102,7 @@ class SurfaceDrawing:
 
     def _follow(self, log: Log) -> bool:
         """Move the sea to what the eye looks at, by whole cells; say whether it moved."""
-        centre = self.cell * np.round(self._eye.middle[:2] / self.cell)
+        centre = self._cell * np.round(self._eye.middle[:2] / self._cell)
         if np.array_equal(centre, self._centre):
             return False
         self._centre = centre
@@ -120,7 +119,7 @@ class SurfaceDrawing:
             return False
         self._height = height
         eye = np.array([*self._eye.offset[:2], height])
-        self._shades = Shades(self._corners * [1.0, 1.0, 0.0], eye)
+        self._shades = Shades(self._corners * [1.0, 1.0, 0.0], eye, DARK / 255.0)
         opacity = round(255 * OPACITY[is_below])
         log.draw(ENTITY, rr.Mesh3D, albedo_factor=np.array([0xFFFFFF00 + opacity], np.uint32))
         far = Shades(self._far, eye).paint(np.zeros((len(self._far), 2)))

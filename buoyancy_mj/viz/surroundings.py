@@ -9,6 +9,7 @@ from buoyancy_mj.viz import motes, sea_surface, sky
 from buoyancy_mj.viz.eye import ENTITY, Eye
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.motes import MoteDrawing
+from buoyancy_mj.viz.sea_grid import choose_cell
 from buoyancy_mj.viz.sea_surface import SurfaceDrawing
 from buoyancy_mj.viz.sky import draw_sky
 from buoyancy_mj.viz.still_geoms import StillGeoms
@@ -28,8 +29,10 @@ class Surroundings:
     def __init__(self, run: Run, start: mujoco.MjData) -> None:
         self.eye = Eye(run, start)
         """Who looks."""
-        self._surface = SurfaceDrawing(run.buoyancy.water, self.eye)
-        self._geoms = StillGeoms(run.model, self._surface.cell)
+        self.cell = choose_cell(self.eye.distance)
+        """Side of the squares on the sea, and on floors and walls [m]."""
+        self._surface = SurfaceDrawing(run.buoyancy.water, self.eye, self.cell)
+        self._geoms = StillGeoms(run.model, self.cell)
         self._motes = None if self._geoms.has_floor else MoteDrawing(self.eye)
 
     @property
