@@ -9,12 +9,15 @@ from numpy.typing import NDArray
 from buoyancy_mj.viz.eye import ENTITY
 from buoyancy_mj.viz.legend import Legend
 from buoyancy_mj.viz.log import TIMELINE
+from buoyancy_mj.viz.righting_chart import RightingChart
 from buoyancy_mj.viz.surroundings import Surroundings
 
 BACKGROUND = (24, 30, 40)
 """Colour behind an inspection."""
 ROW, HEADER = 23.0, 84.0
 """Height of a row of a text's table, and of what stands above it [pixels]."""
+AWAY, RIGHT = np.array([-0.6, -1.3, 0.5]), np.array([1.3, -0.6, 0.0]) / np.hypot(1.3, 0.6)
+"""Where the eye of an inspection is over the length of the vessel, and what it has on its right."""
 LEGEND_ROW = 32.0
 """Height of a row of the legend [pixels]."""
 WINDOW = 806.0
@@ -59,7 +62,7 @@ def run_blueprint(
 
 
 def inspection_blueprint(
-    title: str, look_at: NDArray[np.float64], size: float, *, righting: bool
+    title: str, look_at: NDArray[np.float64], size: float, chart: RightingChart | None
 ) -> rrb.Blueprint:
     """Lay out an inspection: the vessel on the left, its report and righting arms on the right.
 
@@ -67,12 +70,12 @@ def inspection_blueprint(
         title: name of the view of the vessel.
         look_at: point at which it looks (3,) [m].
         size: length of the vessel [m].
-        righting: whether there are righting arms.
+        chart: the righting arms; None without.
     """
-    world = _world_view(title, look_at, look_at + size * np.array([-0.6, -1.3, 0.5]))
+    world = _world_view(title, look_at, look_at + size * AWAY)
     report = rrb.TextDocumentView(origin="report", name="report")
-    arms = rrb.TimeSeriesView(origin="righting", name="GZ [m] over heel [degrees]")
-    beside = rrb.Vertical(report, arms, row_shares=[3, 2]) if righting else rrb.Vertical(report)
+    shown = [report] if chart is None else [report, chart.view()]
+    beside = rrb.Vertical(*shown, row_shares=[3, 2][: len(shown)])
     return rrb.Blueprint(
         rrb.Horizontal(world, beside, column_shares=[3, 2]),
         rrb.TimePanel(state="hidden"),
