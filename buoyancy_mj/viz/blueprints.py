@@ -6,13 +6,13 @@ import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from buoyancy_mj.viz import sea_surface, sky
+from buoyancy_mj.viz import motes, sea_surface, sky
 from buoyancy_mj.viz.eye import ENTITY, Eye
 from buoyancy_mj.viz.log import TIMELINE
 
 BACKGROUND = (24, 30, 40)
 """Colour behind an inspection."""
-SURROUNDINGS = (sky.ENTITY, sea_surface.ENTITY, sea_surface.FAR, ENTITY)
+SURROUNDINGS = (sky.ENTITY, sea_surface.ENTITY, sea_surface.FAR, motes.ENTITY, ENTITY)
 """Entities that a pointer passes over."""
 ROW, HEADER = 23.0, 84.0
 """Height of a row of a text's table, and of what stands above it [pixels]."""

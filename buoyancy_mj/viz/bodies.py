@@ -8,17 +8,18 @@ import rerun as rr
 from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
-from buoyancy_mj.submersion.wetted_surface import cut_waterline
+from buoyancy_mj.submersion.wetted_surface import Placed, cut_waterlines
 from buoyancy_mj.viz.depth_tint import DepthTint
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.tiles import tile_geom
 from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
 from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 
 TURN = [1, 2, 3, 0]
 """Order of a quaternion of MuJoCo as the viewer takes it, the scalar last."""
 WATERLINE = (255, 255, 255)
-RATE = 30.0
-"""Times that the waterline is drawn in a second [Hz], at most: as often as the sea."""
+RATE = 20.0
+"""Times that the waterline is drawn in a second [Hz], at most."""
 
 
 class BodyDrawing:
@@ -27,11 +28,12 @@ class BodyDrawing:
     Args:
         run: the run.
         size: length of the vehicle [m].
+        tile: side of the squares on floors and walls [m].
     """
 
-    def __init__(self, run: Run, size: float) -> None:
+    def __init__(self, run: Run, size: float, tile: float) -> None:
         self._run = run
-        self._size = size
+        self._size, self._tile = size, tile
         self._geoms = list(find_visible_geoms(run.model))
         self._moving = [geom for geom in self._geoms if geom.moves]
         self._foils = list(find_visible_foils(run.model))
@@ -44,6 +46,11 @@ class BodyDrawing:
             np.array([geom.colour for geom in self._moving], np.uint8).reshape(-1, 4),
         )
         self._due = -math.inf
+
+    @property
+    def has_surroundings(self) -> bool:
+        """Whether anything stays that is seen."""
+        return len(self._moving) < len(self._geoms)
 
     def draw_static(self, log: Log) -> None:
         """Draw all geoms, and foils that are sites, in the frames of their bodies."""
@@ -59,6 +66,9 @@ class BodyDrawing:
             log.keep(entity, pose)
             if not geom.moves:
                 log.keep(entity, rr.Mesh3D.from_fields(albedo_factor=geom.colour))
+                squares = tile_geom(geom, self._tile)
+                if squares is not None:
+                    log.keep(entity, squares)
         for visible in self._foils:
             self._draw_foil(log, visible)
         radius = 0.003 * self._size
@@ -90,19 +100,15 @@ class BodyDrawing:
 
     def _draw_waterline(self, log: Log, frame: Frame) -> None:
         """Draw the waterline on all hulls that the surface cuts."""
-        data = frame.data
-        water = self._run.buoyancy.water
-        hulls = self._run.buoyancy.hulls
-        lines = [
-            cut_waterline(
-                hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom], water, frame.time
-            )
-            for hull, waterplane in zip(hulls, frame.loads.waterplane_area, strict=True)
+        data, hulls = frame.data, self._run.buoyancy.hulls
+        cut = [
+            Placed(hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom])
             # NaN from a method that does not know the area
-            if waterplane != 0.0
+            for hull, area in zip(hulls, frame.loads.waterplane_area.tolist(), strict=True)
+            if area != 0.0
         ]
-        strips = np.concatenate([np.zeros((0, 2, 3)), *lines])
-        log.draw("world/waterline", rr.LineStrips3D, strips=strips)
+        lines = cut_waterlines(cut, self._run.buoyancy.water, frame.time)
+        log.draw("world/waterline", rr.LineStrips3D, strips=lines)
 
     def _body_entity(self, body: int) -> str:
         """The entity of a body."""

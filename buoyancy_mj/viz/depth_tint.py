@@ -1,5 +1,6 @@
 """`DepthTint`: geoms keep their colours under water, with less red the deeper they are."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -10,10 +11,12 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz.log import Log
 
-SHALLOW, DEEP = np.array([0.88, 0.98, 1.0]), np.array([0.5, 0.84, 0.95])
+SHALLOW, DEEP = np.array([0.9, 0.98, 1.0]), np.array([0.68, 0.9, 1.0])
 """What is left of red, green and blue just under the surface and far below it."""
 FADE = 6.0
 """Depth over which colours change [m]."""
+RATE = 10.0
+"""Times that depths are looked at in a second [Hz], at most."""
 STEPS = 8
 """Number of tints between the two."""
 
@@ -43,11 +46,13 @@ class DepthTint:
         tinted[..., :3] = np.rint(colours[:, None, :3] * left)
         self._colours = tinted.view(">u4").astype(np.uint32)
         self._steps = np.full(len(geoms), -1)
+        self._due = -math.inf
 
     def draw(self, log: Log, frame: Frame) -> None:
         """Colour the geoms that are deeper or less deep than before."""
-        if not len(self._geoms):
+        if frame.time < self._due or not len(self._geoms):
             return
+        self._due = frame.time + 1.0 / RATE - 1e-6
         depths = self._water.depth(frame.data.geom_xpos[self._geoms], frame.time)
         steps = self.find_steps(depths)
         for geom in np.flatnonzero(steps != self._steps).tolist():

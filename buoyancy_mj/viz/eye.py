@@ -19,7 +19,7 @@ FOVY = math.radians(55.0)
 """Angle that the viewer's eye takes from top to bottom [rad]."""
 ASPECT = 1.4
 """Width of the view over its height, about."""
-ROOM = 0.5, 0.75
+ROOM = 0.5, 0.85
 """Part of the picture that vehicles fill, from top to bottom and across."""
 PITCH = math.radians(14.0), math.radians(10.0)
 """Angle by which the eye stands higher than what it looks at [rad]: over water, and in it."""
@@ -83,7 +83,8 @@ class Eye:
     @property
     def offset(self) -> NDArray[np.float64]:
         """From what it looks at to the eye (3,) [m]."""
-        return self.distance * self._away
+        offset: NDArray[np.float64] = self.distance * self._away
+        return offset
 
     @property
     def position(self) -> NDArray[np.float64]:
@@ -122,7 +123,9 @@ class Eye:
         half = 0.5 * (high - low)
         along = math.hypot(half[0], half[1]) + self._alone
         self.distance = max(self.distance, find_distance(along, half[2] + self._alone))
-        log.draw(ENTITY, rr.Transform3D, translation=self.position[None], mat3x3=self._turn)
+        log.draw(
+            ENTITY, rr.Transform3D, translation=self.position[None], quaternion=self._turn[None]
+        )
 
     def _follow(self, middle: NDArray[np.float64], time: float) -> None:
         """Go after what it looks at, late, but never so late that it leaves the picture."""
@@ -134,7 +137,7 @@ class Eye:
 
     def _find_rise(self, up: float) -> float:
         """How much higher than what it looks at the eye stands [m], clear of the surface."""
-        depth, clear = self.level - self.middle[2], 1.2 * self.crest + 0.2 * up
+        depth, clear = self.level - float(self.middle[2]), 1.2 * self.crest + 0.2 * up
         if depth > 1.2 * up + self.crest:
             return min(self.distance * math.sin(PITCH[1]), depth - clear)
         rise = max(self.distance * math.sin(PITCH[0]), depth + clear)
@@ -153,14 +156,16 @@ def find_distance(along: float, up: float) -> float:
 
 
 def _look_along(forward: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How a level camera turns that looks along a unit vector (3,): by columns (1, 9)."""
+    """The quaternion (4,), the scalar last, of a level camera that looks along a unit vector."""
     right = np.cross(forward, [0.0, 0.0, 1.0])
     right /= np.linalg.norm(right)
-    # right, down and forward
-    return np.concatenate([right, np.cross(forward, right), forward])[None]
+    turn = np.column_stack([right, np.cross(forward, right), forward])
+    scalar_first = np.empty(4)
+    mujoco.mju_mat2Quat(scalar_first, turn.ravel())
+    return np.roll(scalar_first, -1)
 
 
 def measure_crest(water: Water) -> float:
-    """Height of crests [m]: the sum of all waves, or two standard deviations, as higher are rare."""
+    """Height of crests [m]: of all waves at once, or two standard deviations, as more is rare."""
     amplitudes = water.rows[:, 0]
     return float(min(np.abs(amplitudes).sum(), 2.0 * math.sqrt(0.5 * (amplitudes**2).sum())))

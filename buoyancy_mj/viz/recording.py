@@ -22,8 +22,10 @@ from buoyancy_mj.viz.contacts import ContactDrawing
 from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.forces import ForceDrawing
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.motes import MoteDrawing
 from buoyancy_mj.viz.plot_views import Times, lay_out_spectra, lay_out_tabs
 from buoyancy_mj.viz.rrd import RrdFile
+from buoyancy_mj.viz.sea_grid import choose_cell
 from buoyancy_mj.viz.sea_surface import SurfaceDrawing
 from buoyancy_mj.viz.sky import draw_sky
 from buoyancy_mj.viz.spectra import Spectra
@@ -95,9 +97,10 @@ class Recording:
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
         length = max(vehicle.length for vehicle in vehicles)
-        self._bodies = BodyDrawing(run, length)
         self._eye = Eye(run, self._start)
+        self._bodies = BodyDrawing(run, length, choose_cell(self._eye.distance))
         self._surface = SurfaceDrawing(run.buoyancy.water, self._eye)
+        self._motes = None if self._bodies.has_surroundings else MoteDrawing(self._eye)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
@@ -146,6 +149,8 @@ class Recording:
         centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
         self._eye.draw(self._log, centres, frame.time)
         self._surface.draw(self._log, frame.time)
+        if self._motes is not None:
+            self._motes.draw(self._log)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
@@ -209,6 +214,8 @@ class Recording:
         self._eye.draw_static(self._log)
         self._bodies.draw_static(self._log)
         self._surface.draw_static(self._log)
+        if self._motes is not None:
+            self._motes.draw_static(self._log)
         for forces in self._forces:
             forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)

@@ -5,13 +5,13 @@ from numpy.typing import NDArray
 
 PIXELS = 512
 """Pixels along a side of its picture."""
-DARK = 225
+DARK = 205
 """Brightness between its lines, of 255."""
 STEPS = np.array([1.0, 2.0, 5.0, 10.0])
 
 
 def choose_cell(distance: float) -> float:
-    """A round length of its cells [m], for an eye at a distance [m]: 1, 2 or 5 times 10 to the n."""
+    """A round length of cells [m] for an eye at a distance [m]: 1, 2 or 5 times a power of 10."""
     wanted = 0.6 * distance
     decade = 10.0 ** np.floor(np.log10(wanted))
     return float(decade * STEPS[STEPS * decade <= wanted * (1.0 + 1e-9)][-1])

@@ -14,6 +14,8 @@ OPACITY = 0.55, 0.85
 """How little shows through the surface, 0 to 1, from above and from below."""
 LEAST = 0.10
 """Least cosine between the surface and the ray, as short waves have it on a surface that grazes."""
+AIR = 8000.0
+"""Distance over which air takes the colour of what one sees [m]."""
 WINDOW = 0.66
 """Cosine of the angle to the vertical within which the sky is seen from below (Snell)."""
 
@@ -41,16 +43,23 @@ class Shades:
         """Colours (n,) as 0xRRGGBBAA, for slopes (n, 2) of the surface along x and y."""
         cosines = self._z - self._x * slopes[:, 0] - self._y * slopes[:, 1]
         steps = np.clip(cosines, 0.0, STEPS - 1.0).astype(np.int32)
-        return self._table[self._rows + steps]
+        colours: NDArray[np.uint32] = self._table[self._rows + steps]
+        return colours
 
 
 def see_through(
-    colours: NDArray[np.uint32], points: NDArray[np.float64], eye: NDArray[np.float64]
+    colours: NDArray[np.uint32], points: NDArray[np.floating], eye: NDArray[np.float64]
 ) -> NDArray[np.uint32]:
-    """Colours (n,) of opaque points (n, 3) [m] that look as if the deep showed through them."""
+    """Colours (n,) of opaque points (n, 3) [m] that look as if the deep showed through them.
+
+    In the distance air is before them.
+    """
     surface = _to_linear(_unpack(colours)[:, :3] / 255.0)
-    behind = _to_linear(shade_depths(DAYLIGHT, points - eye))
-    return _pack(_to_screen(behind + OPACITY[0] * (surface - behind)))
+    rays = points - eye
+    behind = _to_linear(shade_depths(DAYLIGHT, rays))
+    light = behind + OPACITY[0] * (surface - behind)
+    air = 1.0 - np.exp(-np.linalg.norm(rays, axis=1, keepdims=True) / AIR)
+    return _pack(_to_screen(light + (_to_linear(np.array(DAYLIGHT.horizon)) - light) * air))
 
 
 @functools.cache

@@ -13,6 +13,7 @@ from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.sea_grid import choose_cell, paint_grid
 from buoyancy_mj.viz.sea_shades import OPACITY, Shades, see_through
+from buoyancy_mj.viz.textures import texture
 
 ENTITY, FAR = "world/water", "world/water/far"
 """The surface with its waves, and still water from there to the horizon."""
@@ -48,7 +49,8 @@ class SurfaceDrawing:
         self._radius = float(radii[-1])
         self._corners = np.vstack([np.zeros((1, 3), np.float32), _place_rings(radii)])
         self._faces = join_rings(count, SPOKES)
-        far = np.geomspace(self._radius, HORIZON, 8)
+        # through the sky, without a gap
+        far = np.geomspace(self._radius, 1.1 * HORIZON, 8)
         self._far, self._far_faces = _place_rings(far), join_rings(8, SPOKES)[SPOKES:] - 1
 
         # waves fade where cells are too long for them, and towards the rim
@@ -59,7 +61,7 @@ class SurfaceDrawing:
             Band(band.water, band.weights * rim[: len(band.weights)])
             for band in split_waves(water, cells)
         ]
-        self._centre: NDArray[np.float64] | None = None
+        self._centre = np.full(2, np.nan)
         self._drawn = self._coloured = -math.inf
         self._height = math.inf
         self._shades: Shades
@@ -67,15 +69,8 @@ class SurfaceDrawing:
     def draw_static(self, log: Log) -> None:
         """Draw what stays the same: triangles, and the grid on them."""
         places = self._corners[:, :2] / (2.0 * self._radius) + 0.5
-        grid = rr.Mesh3D(
-            vertex_positions=self._corners,
-            triangle_indices=self._faces,
-            vertex_texcoords=places,
-            albedo_texture=paint_grid(self._radius, self._cell),
-        )
-        # a static position would hide those of each frame
-        grid.vertex_positions = None
-        log.keep(ENTITY, grid)
+        log.keep(ENTITY, rr.Mesh3D.from_fields(triangle_indices=self._faces))
+        log.keep(ENTITY, texture(paint_grid(self._radius, self._cell), places))
         still = rr.Mesh3D.from_fields(vertex_positions=self._far, triangle_indices=self._far_faces)
         log.keep(FAR, still)
 
@@ -108,7 +103,7 @@ class SurfaceDrawing:
     def _follow(self, log: Log) -> bool:
         """Move the sea to what the eye looks at, by whole cells; say whether it moved."""
         centre = self._cell * np.round(self._eye.middle[:2] / self._cell)
-        if self._centre is not None and np.array_equal(centre, self._centre):
+        if np.array_equal(centre, self._centre):
             return False
         self._centre = centre
         place = np.array([[*centre, self._water.level]])
@@ -134,8 +129,9 @@ class SurfaceDrawing:
         return True
 
 
-def _place_rings(radii: NDArray[np.float64]) -> NDArray[np.float32]:
+def _place_rings(radii: NDArray[np.floating]) -> NDArray[np.float32]:
     """Corners (n, 3) [m] of rings around the middle, z = 0."""
     angles = 2.0 * math.pi / SPOKES * np.arange(SPOKES)
     ring = np.stack([np.cos(angles), np.sin(angles), np.zeros(SPOKES)], axis=-1)
-    return (radii[:, None, None] * ring).reshape(-1, 3).astype(np.float32)
+    corners: NDArray[np.float32] = (radii[:, None, None] * ring).astype(np.float32)
+    return corners.reshape(-1, 3)
