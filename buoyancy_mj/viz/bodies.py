@@ -5,15 +5,15 @@ import math
 import numpy as np
 import rerun as rr
 
-from buoyancy_mj.hulls.names import body_name, geom_name
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.submersion.wetted_surface import Placed, cut_waterlines
 from buoyancy_mj.viz.depth_tint import DepthTint
+from buoyancy_mj.viz.entities import body_entity, geom_entity
 from buoyancy_mj.viz.log import Log
-from buoyancy_mj.viz.tiles import tile_geom
+from buoyancy_mj.viz.sites import draw_sites
 from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
-from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
+from buoyancy_mj.viz.visible_geoms import find_visible_geoms
 
 TURN = [1, 2, 3, 0]
 """Order of a quaternion of MuJoCo as the viewer takes it, the scalar last."""
@@ -28,34 +28,27 @@ class BodyDrawing:
     Args:
         run: the run.
         size: length of the vehicle [m].
-        tile: side of the squares on floors and walls [m].
     """
 
-    def __init__(self, run: Run, size: float, tile: float) -> None:
+    def __init__(self, run: Run, size: float) -> None:
         self._run = run
-        self._size, self._tile = size, tile
-        self._geoms = list(find_visible_geoms(run.model))
-        self._moving = [geom for geom in self._geoms if geom.moves]
+        self._size = size
+        self._geoms = [geom for geom in find_visible_geoms(run.model) if geom.moves]
         self._foils = list(find_visible_foils(run.model))
-        bodies = {geom.body for geom in self._moving} | {one.foil.body for one in self._foils}
-        self._bodies = {body: self._body_entity(body) for body in sorted(bodies)}
+        bodies = {geom.body for geom in self._geoms} | {one.foil.body for one in self._foils}
+        self._bodies = {body: body_entity(run.model, body) for body in sorted(bodies)}
         self._tint = DepthTint(
             run.buoyancy.water,
-            np.array([geom.geom for geom in self._moving], int),
-            [self._geom_entity(geom) for geom in self._moving],
-            np.array([geom.colour for geom in self._moving], np.uint8).reshape(-1, 4),
+            np.array([geom.geom for geom in self._geoms], int),
+            [geom_entity(run.model, geom.geom, geom.body) for geom in self._geoms],
+            np.array([geom.colour for geom in self._geoms], np.uint8).reshape(-1, 4),
         )
         self._due = -math.inf
 
-    @property
-    def has_surroundings(self) -> bool:
-        """Whether anything stays that is seen."""
-        return len(self._moving) < len(self._geoms)
-
     def draw_static(self, log: Log) -> None:
-        """Draw all geoms, and foils that are sites, in the frames of their bodies."""
+        """Draw the geoms that move, and foils that are sites, in the frames of their bodies."""
         for geom in self._geoms:
-            entity = self._geom_entity(geom)
+            entity = geom_entity(self._run.model, geom.geom, geom.body)
             mesh = rr.Mesh3D(
                 vertex_positions=geom.vertices,
                 triangle_indices=geom.faces,
@@ -64,13 +57,9 @@ class BodyDrawing:
             pose = rr.Transform3D(translation=geom.position, mat3x3=geom.rotation)
             log.keep(entity, mesh)
             log.keep(entity, pose)
-            if not geom.moves:
-                log.keep(entity, rr.Mesh3D.from_fields(albedo_factor=geom.colour))
-                squares = tile_geom(geom, self._tile)
-                if squares is not None:
-                    log.keep(entity, squares)
         for visible in self._foils:
             self._draw_foil(log, visible)
+        draw_sites(log, self._run.model)
         radius = 0.003 * self._size
         log.keep("world/waterline", rr.LineStrips3D.from_fields(colors=[WATERLINE], radii=[radius]))
 
@@ -88,7 +77,9 @@ class BodyDrawing:
     def _draw_foil(self, log: Log, visible: VisibleFoil) -> None:
         """Draw a foil that is a site in the frame of its body."""
         foil, mesh = visible.foil, visible.mesh
-        entity = f"{self._body_entity(foil.body)}/{rr.escape_entity_path_part(foil.name)}"
+        entity = (
+            f"{body_entity(self._run.model, foil.body)}/{rr.escape_entity_path_part(foil.name)}"
+        )
         plate = rr.Mesh3D(
             vertex_positions=mesh.vertices,
             triangle_indices=mesh.faces,
@@ -109,14 +100,3 @@ class BodyDrawing:
         ]
         lines = cut_waterlines(cut, self._run.buoyancy.water, frame.time)
         log.draw("world/waterline", rr.LineStrips3D, strips=lines)
-
-    def _body_entity(self, body: int) -> str:
-        """The entity of a body."""
-        if body == 0:
-            return "world/environment"
-        return f"world/bodies/{rr.escape_entity_path_part(body_name(self._run.model, body))}"
-
-    def _geom_entity(self, geom: VisibleGeom) -> str:
-        """The entity of a geom."""
-        name = geom_name(self._run.model, geom.geom)
-        return f"{self._body_entity(geom.body)}/{rr.escape_entity_path_part(name)}"

@@ -152,7 +152,7 @@ def find_distance(along: float, up: float) -> float:
         up: how far they reach up and down [m].
     """
     half = math.tan(0.5 * FOVY)
-    return max(along / (ROOM[1] * ASPECT * half) + 0.5 * along, up / (ROOM[0] * half))
+    return max(along / (ROOM[1] * ASPECT * half) + 0.25 * along, up / (ROOM[0] * half))
 
 
 def _look_along(forward: NDArray[np.float64]) -> NDArray[np.float64]:

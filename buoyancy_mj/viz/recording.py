@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import rerun as rr
 
 from buoyancy_mj.errors import BuoyancyWarning
@@ -19,16 +18,13 @@ from buoyancy_mj.viz import instruments, plots, tabs
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
-from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.forces import ForceDrawing
+from buoyancy_mj.viz.legend import Legend
 from buoyancy_mj.viz.log import Log
-from buoyancy_mj.viz.motes import MoteDrawing
 from buoyancy_mj.viz.plot_views import Times, lay_out_spectra, lay_out_tabs
 from buoyancy_mj.viz.rrd import RrdFile
-from buoyancy_mj.viz.sea_grid import choose_cell
-from buoyancy_mj.viz.sea_surface import SurfaceDrawing
-from buoyancy_mj.viz.sky import draw_sky
 from buoyancy_mj.viz.spectra import Spectra
+from buoyancy_mj.viz.surroundings import Surroundings
 from buoyancy_mj.viz.tendons import TendonDrawing
 from buoyancy_mj.viz.texts import write_summary
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
@@ -97,10 +93,9 @@ class Recording:
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
         length = max(vehicle.length for vehicle in vehicles)
-        self._eye = Eye(run, self._start)
-        self._bodies = BodyDrawing(run, length, choose_cell(self._eye.distance))
-        self._surface = SurfaceDrawing(run.buoyancy.water, self._eye)
-        self._motes = None if self._bodies.has_surroundings else MoteDrawing(self._eye)
+        self._surroundings = Surroundings(run, self._start)
+        self._legend = Legend(run, self._surroundings.cell)
+        self._bodies = BodyDrawing(run, length)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
@@ -146,11 +141,7 @@ class Recording:
 
         # the picture
         self._bodies.draw(self._log, frame)
-        centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
-        self._eye.draw(self._log, centres, frame.time)
-        self._surface.draw(self._log, frame.time)
-        if self._motes is not None:
-            self._motes.draw(self._log)
+        self._surroundings.draw(self._log, frame)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
@@ -210,15 +201,12 @@ class Recording:
         self._lay_out()
         self._log.keep("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._log_text("scene", f"```toml\n{run.text}\n```")
-        draw_sky(self._log)
-        self._eye.draw_static(self._log)
+        self._surroundings.draw_static(self._log)
         self._bodies.draw_static(self._log)
-        self._surface.draw_static(self._log)
-        if self._motes is not None:
-            self._motes.draw_static(self._log)
         for forces in self._forces:
             forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)
+        self._legend.draw_static(self._log)
 
         # the style of each line
         causes = run.buoyancy.causes
@@ -246,7 +234,14 @@ class Recording:
         laid = lay_out_tabs(vehicles_own, shared, extents, times)
         if self._spectra.known:
             laid.append(lay_out_spectra(self._spectra.entities))
-        layout = run_blueprint(run.title, self._eye, texts=self._texts, rows=rows, tabs=laid)
+        layout = run_blueprint(
+            run.title,
+            self._surroundings,
+            self._legend,
+            texts=self._texts,
+            rows=rows,
+            tabs=laid,
+        )
         self._write()
         for stream in self._streams:
             stream.send_blueprint(layout)

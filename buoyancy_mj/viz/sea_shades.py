@@ -10,7 +10,7 @@ from buoyancy_mj.drawing.sky import shade_depths, shade_sky
 
 STEPS, VEILS = 256, 32
 """Numbers of colours by the angle of the surface, and by how much water is before it."""
-OPACITY = 0.55, 0.85
+OPACITY = 0.55, 0.95
 """How little shows through the surface, 0 to 1, from above and from below."""
 LEAST = 0.10
 """Least cosine between the surface and the ray, as short waves have it on a surface that grazes."""
@@ -26,9 +26,12 @@ class Shades:
     Args:
         points: relative to the middle of the sea (n, 3) [m].
         eye: where one looks from (3,) [m], likewise. Below 0 it is under water.
+        dimmed: brightness of a picture on the surface, 0 to 1, which the colours make up for.
     """
 
-    def __init__(self, points: NDArray[np.floating], eye: NDArray[np.float64]) -> None:
+    def __init__(
+        self, points: NDArray[np.floating], eye: NDArray[np.float64], dimmed: float = 1.0
+    ) -> None:
         rays = eye - points
         distances = np.linalg.norm(rays, axis=1)
         rays /= np.maximum(distances, 1e-9)[:, None]
@@ -37,7 +40,7 @@ class Shades:
         self._x, self._y, self._z = ((STEPS - 1) * rays.T).astype(np.float32)
         veils = 1.0 - 0.05 ** (distances / DAYLIGHT.visibility) if eye[2] < 0.0 else 0.0 * distances
         self._rows = STEPS * np.rint((VEILS - 1) * veils).astype(np.int32)
-        self._table = _tabulate(below=bool(eye[2] < 0.0))
+        self._table = _tabulate(dimmed, below=bool(eye[2] < 0.0))
 
     def paint(self, slopes: NDArray[np.floating]) -> NDArray[np.uint32]:
         """Colours (n,) as 0xRRGGBBAA, for slopes (n, 2) of the surface along x and y."""
@@ -63,7 +66,7 @@ def see_through(
 
 
 @functools.cache
-def _tabulate(*, below: bool) -> NDArray[np.uint32]:
+def _tabulate(dimmed: float, *, below: bool) -> NDArray[np.uint32]:
     """Colours (VEILS * STEPS,) by how much water is before them, and by the cosine."""
     cosine = np.maximum(np.linspace(0.0, 1.0, STEPS), LEAST)[:, None]
     if below:
@@ -79,7 +82,8 @@ def _tabulate(*, below: bool) -> NDArray[np.uint32]:
         deep = np.array(DAYLIGHT.above.colour)
         colours = deep + (sky - deep) * mirror
     veils = np.linspace(0.0, 1.0, VEILS)[:, None, None]
-    return _pack((colours + (np.array(DAYLIGHT.haze) - colours) * veils).reshape(-1, 3))
+    veiled = (colours + (np.array(DAYLIGHT.haze) - colours) * veils).reshape(-1, 3)
+    return _pack(_to_screen(_to_linear(veiled) / _to_linear(np.array(dimmed))))
 
 
 def _pack(colours: NDArray[np.float64]) -> NDArray[np.uint32]:

@@ -11,7 +11,7 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz import sky
 from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.log import Log
-from buoyancy_mj.viz.sea_grid import choose_cell, paint_grid
+from buoyancy_mj.viz.sea_grid import DARK, paint_grid
 from buoyancy_mj.viz.sea_shades import OPACITY, Shades, see_through
 from buoyancy_mj.viz.textures import texture
 
@@ -37,11 +37,11 @@ class SurfaceDrawing:
     Args:
         water: the sea.
         eye: who looks at it.
+        cell: side of a cell of the grid that lies on it [m].
     """
 
-    def __init__(self, water: Water, eye: Eye) -> None:
-        self._water, self._eye = water, eye
-        self._cell = choose_cell(eye.distance)
+    def __init__(self, water: Water, eye: Eye, cell: float) -> None:
+        self._water, self._eye, self._cell = water, eye, cell
         self._step = 2.0 ** math.floor(math.log2(eye.distance / FINE))
         growth = 1.0 + 2.0 * math.pi / SPOKES
         count = math.ceil(math.log(OUTER / INNER) / math.log(growth)) + 1
@@ -119,7 +119,7 @@ class SurfaceDrawing:
             return False
         self._height = height
         eye = np.array([*self._eye.offset[:2], height])
-        self._shades = Shades(self._corners * [1.0, 1.0, 0.0], eye)
+        self._shades = Shades(self._corners * [1.0, 1.0, 0.0], eye, DARK / 255.0)
         opacity = round(255 * OPACITY[is_below])
         log.draw(ENTITY, rr.Mesh3D, albedo_factor=np.array([0xFFFFFF00 + opacity], np.uint32))
         far = Shades(self._far, eye).paint(np.zeros((len(self._far), 2)))

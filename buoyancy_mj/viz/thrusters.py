@@ -18,6 +18,13 @@ LONGER = 4.0
 """Length of an arrow over that of a load of the same force: thrusters are weak."""
 
 
+def find_thrusters(model: mujoco.MjModel) -> NDArray[np.int64]:
+    """Indices (n,) of the actuators that push at a site."""
+    at_site = np.array(find_pushing(model), np.int64)
+    pushing: NDArray[np.int64] = at_site[model.actuator_gear[at_site, :3].any(axis=1)]
+    return pushing
+
+
 class ThrusterDrawing:
     """The actuators of a run that push at a site: motors, and thrusters of this package.
 
@@ -28,8 +35,7 @@ class ThrusterDrawing:
 
     def __init__(self, run: Run, size: float) -> None:
         model = run.model
-        at_site = np.array(find_pushing(model), int)
-        self._actuators = at_site[model.actuator_gear[at_site, :3].any(axis=1)]
+        self._actuators = find_thrusters(model)
         self._gear = model.actuator_gear[self._actuators, :3]
         self._names = [actuator_name(model, actuator) for actuator in self._actuators.tolist()]
         self._forces = model.actuator_outadr[self._actuators]

@@ -1,4 +1,4 @@
-"""`tile_geom`: floors and walls in squares, by which motion over them shows."""
+"""`tile_geom`: a geom in squares, by which motion past it shows."""
 
 import numpy as np
 import rerun as rr
@@ -11,20 +11,15 @@ PIXELS = 64
 """Pixels along a side of the picture that repeats, two squares wide."""
 DARK = 222
 """Brightness of every second square, of 255."""
-FEWEST = 3.0
-"""Length of the smallest that has squares, over the side of one."""
 
 
-def tile_geom(geom: VisibleGeom, side: float) -> rr.Mesh3D | None:
-    """Squares for the mesh of a geom that stays; None for one that is small.
+def tile_geom(geom: VisibleGeom, side: float) -> rr.Mesh3D:
+    """Squares for the mesh of a geom that stays.
 
     Args:
         geom: the geom.
         side: side of a square [m]; one has a corner at the origin of the world.
     """
-    lengths = np.sort(np.ptp(geom.vertices, axis=0))
-    if lengths[-2] < FEWEST * side:
-        return None
     points = geom.vertices @ geom.rotation.T + geom.position
     # the two axes along which each face lies, about
     across = np.abs(geom.normals @ geom.rotation.T).argmax(axis=1)
