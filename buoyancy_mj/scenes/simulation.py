@@ -27,6 +27,7 @@ from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.frames import Frame, take_only
 from buoyancy_mj.scenes.lookout import Lookout
 from buoyancy_mj.scenes.meters import Meters
+from buoyancy_mj.scenes.natural_periods import Periods, find_natural_periods
 from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.steering import Steering
@@ -320,8 +321,13 @@ class Simulation(ReadOnly):
         self._present = poses_of(self._source.data)
         return frame
 
-    def summary(self) -> Summary:
-        """Sum up the run so far."""
+    def summary(self, *, with_periods: bool = False) -> Summary:
+        """Sum up the run so far.
+
+        Args:
+            with_periods: whether to find the natural periods of the vehicles too, from their
+                statics, which takes some milliseconds for each.
+        """
         now = float(self.data.time)
         monitors = self._source.monitors
         if self._present is None:
@@ -342,7 +348,14 @@ class Simulation(ReadOnly):
             wall_time=self._wall_time,
             real_time_factor=now / self._wall_time if self._wall_time else math.nan,
             sensors=self._meters.measure_sensors(now),
+            natural_periods=self._natural_periods if with_periods else {},
         )
+
+    @functools.cached_property
+    def _natural_periods(self) -> dict[str, Periods]:
+        """Natural periods of the vehicles, by their names."""
+        hulls, water = self.buoyancy.hulls, self.buoyancy.water
+        return find_natural_periods(self.model, hulls, self.vehicles, water)
 
     def _list_frames(self) -> Iterator[int]:
         """The steps after which frames are due: at the record rate, and the last."""

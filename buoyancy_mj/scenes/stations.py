@@ -43,7 +43,7 @@ class Stations:
 
     @functools.cached_property
     def _arms(self) -> list[tuple[int, NDArray[np.int64], NDArray[np.float64]]]:
-        """Each body, its points, and what a rotation (9,) is multiplied by to turn them (3 k, 9)."""
+        """Each body, its points, and what times a rotation (9,) turns them (3 k, 9)."""
         arms = []
         for body in dict.fromkeys(self.bodies.tolist()):
             own = np.flatnonzero(self.bodies == body)

@@ -6,6 +6,7 @@ from typing import Any
 
 from buoyancy_mj.scenes import summary_rows
 from buoyancy_mj.scenes.frames import take_only
+from buoyancy_mj.scenes.natural_periods import Periods
 from buoyancy_mj.scenes.sea_state import SeaState
 from buoyancy_mj.scenes.seakeeping import NAMES, Seakeeping
 from buoyancy_mj.scenes.sensor_measures import SensorMeasure
@@ -70,6 +71,8 @@ class Summary:
     """Simulated over wall time."""
     sensors: Mapping[str, SensorMeasure] = dataclasses.field(default_factory=dict)
     """What the sensors measured that were asked for, by the names of their numbers."""
+    natural_periods: Mapping[str, Periods] = dataclasses.field(default_factory=dict)
+    """Of each vehicle that floats, if they were asked for; see `Simulation.summary`."""
 
     @property
     def mass(self) -> float:
@@ -126,11 +129,8 @@ class Summary:
 
     @property
     def caption(self) -> str:
-        """What holds for the whole run, in one line."""
-        return (
-            f"method {self.method}, {self.simulated_time:.2f} s simulated at "
-            f"{self.real_time_factor:.1f} x real time"
-        )
+        """What holds for the whole run, in a line or two."""
+        return summary_rows.write_caption(self)
 
     def values(self) -> dict[str, Any]:
         """All numbers by name; of several vehicles each has its own, called NAME.number."""
