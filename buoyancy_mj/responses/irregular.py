@@ -23,10 +23,8 @@ LENGTH = 300.0
 """Length of a run, in peak periods."""
 LEAD = 20.0
 """What is left out at its beginning, in peak periods."""
-CALM = 4.0
-"""Peak periods over which the station takes its mean, and the drift is smoothed."""
-SOFTNESS = 6.0
-"""Natural period of the station, in such times."""
+SMOOTH = 4.0
+"""Peak periods over which the drift is smoothed."""
 COMPONENTS = 200
 """Waves of the sea, at least, so that its lines stand close together."""
 
@@ -40,6 +38,8 @@ class IrregularResponse(NamedTuple):
     """Squared coherence of motion and elevation (p, c)."""
     sure: NDArray[np.bool_]
     """Whether each can be trusted (p, c)."""
+    turned: float
+    """How far the vehicle's mean heading is off the one that was asked for [rad]."""
 
 
 def choose_steps(peak_period: float, shortest: float, timestep: float) -> tuple[int, float]:
@@ -85,14 +85,14 @@ def measure_irregular(
         DivergenceError: the simulation left the finite numbers.
     """
     between = steps * subject.simulation.model.opt.timestep
-    calm = round(CALM * peak_period / between)
-    station = Station(subject, calm * between, calm, SOFTNESS) if hold else None
+    samples = round(peak_period / between)
+    station = Station(subject, samples * between, samples) if hold else None
     stepper = Stepper(subject, steps, station, channels.columns, stop)
     stepper.take(round(LEAD * peak_period / between))
     track = stepper.take(round(length * peak_period / between))
 
     # the elevation where the vehicle is on the mean
-    elevation = _follow_elevation(subject, track, calm)
+    elevation = _follow_elevation(subject, track, round(SMOOTH * peak_period / between))
     motions = track.motions(subject.centre, channels.points)
     options = {"fs": 1.0 / between, "nperseg": round(SEGMENT * peak_period / between)}
     signal = scipy.signal
@@ -109,14 +109,15 @@ def measure_irregular(
     coherence = np.array([np.interp(wanted, frequencies, one) for one in coherence]).T
     energy = np.interp(wanted, frequencies, waves) / waves.max()
     sure = (coherence >= SURE) & (energy >= LEAST_ENERGY)[:, None]
-    return IrregularResponse(transfer, coherence, sure)
+    turned = float(track.headings.mean()) - subject.at_start.heading
+    return IrregularResponse(transfer, coherence, sure, math.remainder(turned, 2.0 * math.pi))
 
 
-def _follow_elevation(subject: Subject, track: Track, calm: int) -> NDArray[np.float64]:
+def _follow_elevation(subject: Subject, track: Track, width: int) -> NDArray[np.float64]:
     """Elevation of the sea (n,) [m] at the vehicle's origin, as that drifts on the mean."""
     smooth = track.positions[:, :2]
     for _ in range(2):
-        smooth = scipy.ndimage.uniform_filter1d(smooth, calm, axis=0)
+        smooth = scipy.ndimage.uniform_filter1d(smooth, width, axis=0)
     water = subject.simulation.buoyancy.water
     above = water.elevation(smooth[:, 0], smooth[:, 1], track.times) - water.level
     return np.asarray(above, float)

@@ -55,8 +55,8 @@ def _describe_hold(plan: Plan, subject: Subject, sea: Sea | None) -> str:
         return f"Nothing holds it but what its model says: {subject.tether}"
     if plan.scene.control:
         return "The scene's own controller holds it"
-    soft = SOFTNESS if sea is None else irregular.CALM * irregular.SOFTNESS
+    what = "wave period" if sea is None else "peak period"
     return (
-        "A station holds place and heading by the mean of a wave period, so that it has no part in "
-        f"the motions in waves; its own period is {soft:g} times as long"
+        f"A station holds place and heading by the mean of a {what}, so that it has no part in the "
+        f"motions in waves; its own period is {SOFTNESS:g} times as long"
     )

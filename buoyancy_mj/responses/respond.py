@@ -159,20 +159,33 @@ def _measure(
     shape = len(plan.headings), len(plan.periods), count
     transfer = np.zeros(shape, complex)
     sure = np.ones(shape, bool)
-    cycles = np.zeros(shape[:2], np.int64)
+    cycles, turned = np.zeros(shape[:2], np.int64), np.zeros(shape[:2])
     ahead = first.at_start.heading
     if sea is not None:
         coherence = np.zeros(shape)
         jobs = plan.irregular_jobs(ahead, sea)
         for row, in_sea in enumerate(run_side_by_side(jobs, threads)):
-            transfer[row], coherence[row], sure[row] = in_sea
+            transfer[row], coherence[row], sure[row], turned[row] = in_sea
             each()
-        return {"transfer": transfer, "sure": sure, "coherence": coherence, "cycles": cycles}
+        return {
+            "transfer": transfer,
+            "sure": sure,
+            "coherence": coherence,
+            "cycles": cycles,
+            "turned": turned,
+        }
     for row, in_wave in enumerate(run_side_by_side(plan.regular_jobs(ahead), threads)):
         at = divmod(row, len(plan.periods))
         transfer[at], sure[at], cycles[at] = in_wave.transfer, in_wave.settled, in_wave.periods
+        turned[at] = in_wave.turned
         each()
-    return {"transfer": transfer, "sure": sure, "coherence": None, "cycles": cycles}
+    return {
+        "transfer": transfer,
+        "sure": sure,
+        "coherence": None,
+        "cycles": cycles,
+        "turned": turned,
+    }
 
 
 def _read_list(name: str, values: ArrayLike, above: float = -math.inf) -> NDArray[np.float64]:

@@ -18,6 +18,8 @@ from buoyancy_mj.responses.tracks import MOTIONS
 
 SURE = 0.8
 """Coherence below which what a cross-spectrum says is not told as sure."""
+TURNED = math.radians(2.0)
+"""How far a vehicle may turn away from the heading that was asked for [rad]."""
 LEAST_ENERGY = 0.01
 """Part of the greatest density of wave energy below which nothing is sure either."""
 
@@ -60,6 +62,8 @@ class Responses:
     """Squared coherence with the elevation (h, p, c); None from regular waves."""
     cycles: NDArray[np.int64]
     """Wave periods that each took (h, p); 0 from an irregular sea."""
+    turned: NDArray[np.float64]
+    """How far the mean heading in each run was off the one that was asked for (h, p) [rad]."""
     natural_periods: NDArray[np.float64]
     """Undamped periods of heave, roll and pitch (3,) [s]; inf where nothing restores."""
     density: float
@@ -119,6 +123,13 @@ class Responses:
 
     def doubts(self) -> Iterator[str]:
         """Sentences on what is not sure."""
+        most = float(np.abs(self.turned).max())
+        if most > TURNED:
+            count = int((np.abs(self.turned) > TURNED).any(axis=1).sum())
+            yield (
+                f"from {count} of {len(self.headings)} headings the waves turned the vehicle, by "
+                f"up to {math.degrees(most):.2g} degrees; lower waves turn it less"
+            )
         if self.sure.all():
             return
         count, whole = int((~self.sure).any(axis=2).sum()), self.sure[:, :, 0].size

@@ -6,7 +6,7 @@ import mujoco
 
 from buoyancy_mj.errors import ResponseError, choices
 
-_TURNS = (mujoco.mjtSensor.mjSENS_FRAMEQUAT, mujoco.mjtSensor.mjSENS_BALLQUAT)
+_TURNS = (int(mujoco.mjtSensor.mjSENS_FRAMEQUAT), int(mujoco.mjtSensor.mjSENS_BALLQUAT))
 """Sensors whose values are no signals by themselves: the parts of a quaternion."""
 
 
@@ -31,7 +31,7 @@ def find_columns(
         first, count = int(model.sensor_adr[i]), int(model.sensor_dim[i])
         own = [str(sensor.name)] if count == 1 else [f"{sensor.name}.{n}" for n in range(count)]
         known[str(sensor.name)] = list(zip(own, range(first, first + count), strict=True))
-        if model.sensor_type[i] in _TURNS:
+        if int(model.sensor_type[i]) in _TURNS:
             known[str(sensor.name)] = []
     values = {name: column for pairs in known.values() for name, column in pairs}
 

@@ -12,6 +12,8 @@ SOFTNESS = 10.0
 """Natural period of the station, in periods of the waves."""
 DAMPING = 0.5
 """Its part of critical damping."""
+TRIM = 0.15
+"""How soon it takes up a steady pull, over its natural frequency."""
 AFLOAT = 1e-9
 """Part of weight over length from which on a heave stiffness is one."""
 
@@ -21,7 +23,8 @@ class Station:
 
     A mean over a whole period has no part of the wave's frequency, nor of its harmonics. So the
     spring and the damper act on drift and on turning away alone, and the motions in waves are those
-    of a free vehicle. Its mark is the mean over the first period. What no waterplane holds at its
+    of a free vehicle. Its mark is the mean place over the first period, and the heading at the
+    start; what pulls steadily it takes up in time. What no waterplane holds at its
     height is held there too, with its reserve of buoyancy taken up.
 
     Args:
@@ -41,6 +44,8 @@ class Station:
         omega = 2.0 * math.pi / (softness * period)
         self._stiffness = omega**2 * inertia[[0, 1, 2, 5]]
         self._damping = 2.0 * DAMPING * omega * inertia[[0, 1, 2, 5]]
+        self._trim = TRIM * omega * self._stiffness * period / samples
+        self._steady = np.zeros(4)
 
         # heave, only where water does not
         self.holds_depth = bool(
@@ -48,10 +53,11 @@ class Station:
         )
         self._lift = (at.mass - at.displacement) * at.gravity if self.holds_depth else 0.0
         if not self.holds_depth:
-            self._stiffness[2] = self._damping[2] = 0.0
+            self._stiffness[2] = self._damping[2] = self._trim[2] = 0.0
+        self._heading = at.heading
         self._past = np.zeros((samples, 4))
         self._count = 0
-        self._mean = self._mark = np.zeros(4)
+        self._mark = np.zeros(4)
 
     def hold(self, data: mujoco.MjData) -> None:
         """Look where the vehicle is, and pull at it until the next sample."""
@@ -59,10 +65,9 @@ class Station:
         centre = data.xpos[self._root] + rotation @ self._centre
         heading = math.atan2(rotation[1, 0], rotation[0, 0])
         row = self._count % self._samples
-        if self._count:
-            # without jumps
-            last = self._past[row - 1, 3]
-            heading += 2.0 * math.pi * round((last - heading) / (2.0 * math.pi))
+        # without jumps
+        last = self._past[row - 1, 3] if self._count else self._heading
+        heading += 2.0 * math.pi * round((last - heading) / (2.0 * math.pi))
         now = np.array([*centre, heading])
         before = self._past[row].copy()
         self._past[row] = now
@@ -72,10 +77,11 @@ class Station:
         if self._count >= self._samples:
             mean = self._past.mean(axis=0)
             if self._count == self._samples:
-                self._mark = mean
+                self._mark = np.array([*mean[:3], self._heading])
             else:
                 drift = (now - before) / self._period
-                force = -self._stiffness * (mean - self._mark) - self._damping * drift
+                self._steady -= self._trim * (mean - self._mark)
+                force = self._steady - self._stiffness * (mean - self._mark) - self._damping * drift
         force[2] += self._lift
         self._apply(data, force, centre)
 
