@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.test_docs import ROOT, script
+from tests.scripts import ROOT, script
 
 COPY = script("copy_examples")
 PAGES = {path.stem for path in (ROOT / "docs" / "recipes").glob("*.md")} - {"index"}
