@@ -20,7 +20,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from page_files import write_page_files
-from PIL import Image, ImageGrab
 
 ROOT = Path(__file__).resolve().parent.parent
 MOST_BYTES = 4_000_000
@@ -97,6 +96,8 @@ def _make(name: str, path: Path) -> None:
     else:
         run_in(path.parent, "run", *STILLS[name], f"--screenshot={picture}")
     if picture != path:
+        from PIL import Image
+
         with Image.open(picture) as image:
             image.thumbnail((1600, 900))
             image.save(path, quality=80, method=6)
@@ -110,6 +111,8 @@ def run_in(folder: Path, *arguments: str) -> None:
 
 def _photograph_window(scene: str, path: Path) -> None:
     """Take a picture of Studio's window with a scene in it."""
+    from PIL import ImageGrab
+
     command = [sys.executable, "-m", "buoyancy_mj", "view", scene]
     with _open_screen("1280x800") as environment:
         # where Studio remembers what its window looked like
