@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.printed import compare
 from tests.scripts import ROOT, script
 
 COPY = script("copy_examples")
 PAGES = {path.stem for path in (ROOT / "docs" / "recipes").glob("*.md")} - {"index"}
-NUMBER = r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 NEEDS = {"from_capytaine": ("capytaine", "h5netcdf", "xarray")}
 """What some examples import beside what the package itself needs."""
 
@@ -40,10 +40,7 @@ def test_the_example_prints_what_the_page_says(name, capsys):
     runpy.run_path(str(COPY.EXAMPLES[name]))
     printed = capsys.readouterr().out
     _, said = COPY.read_blocks(COPY.recipe(name).read_text(), name)
-    assert re.split(NUMBER, printed) == re.split(NUMBER, said)
-    for now, then in zip(re.findall(NUMBER, printed), re.findall(NUMBER, said), strict=True):
-        decimals = len(then.partition(".")[2]) if "e" not in then else 0
-        assert float(now) == pytest.approx(float(then), rel=0.05, abs=2.0 * 10.0**-decimals)
+    compare(printed, said)
 
 
 def test_an_example_is_short_and_begins_with_its_question():
