@@ -19,6 +19,8 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
+from page_files import write_page_files
+
 ROOT = Path(__file__).resolve().parent.parent
 MOST_BYTES = 4_000_000
 """Size of the largest of them."""
@@ -34,14 +36,22 @@ STILLS: Mapping[str, Sequence[str]] = {
     "sauvc.png": ("sauvc_course", "--at=21.4", "--size=1280x720", *_ONLY),
     "fleet_at_sea.png": ("fleet", "--at=6", "--size=1280x720", *_ONLY),
     "under.png": ("bluerov2_heavy_station", "--at=4", "--camera=under", "--size=1280x720", *_ONLY),
-}
+    "first_hour/waves.webp": (
+        "auv_waves", "--vehicle=minnow.xml", "--set=water.waves.0.amplitude=0.1", "--at=4",
+        "--duration=5", "--size=1280x720", *_ONLY,
+    ),
+}  # fmt: skip
 """The same of stills."""
 RECORDINGS: Mapping[str, Sequence[str]] = {
     "auv_waves.png": ("run", "auv_waves"),
     "fleet.png": ("run", "fleet"),
     "inspect.png": ("inspect", "sauvc_auv"),
+    "first_hour/rest.webp": ("inspect", "minnow.xml", "--water", "density=1025"),
+    "first_hour/dives.webp": ("run", "minnow.toml"),
 }
 """Commands whose recordings are shown, by the names of the pictures in docs."""
+FILES = ROOT / "docs" / "first_hour.md"
+"""The page that has the files which commands name."""
 WINDOWS: Mapping[str, str] = {"studio.png": "auv_sea_state_2"}
 """Scenes that `buoyancy-mj view` shows, by the names of the pictures in docs."""
 PATIENCE = 60.0
@@ -59,7 +69,8 @@ def main() -> None:
     for name in asked:
         path = ROOT / "docs" / name
         with tempfile.TemporaryDirectory() as folder:
-            made = Path(folder) / name
+            write_page_files(FILES, Path(folder))
+            made = Path(folder) / Path(name).name
             _make(name, made)
             if made.stat().st_size > MOST_BYTES:
                 sys.exit(f"{name} has {made.stat().st_size:,} bytes, and may have {MOST_BYTES:,}")
@@ -68,27 +79,34 @@ def main() -> None:
 
 
 def _make(name: str, path: Path) -> None:
-    """Make one picture."""
+    """Make one picture, in a folder that has the files which commands name."""
+    picture = path if name in FILMS else path.with_suffix(".png")
     if name in RECORDINGS:
-        what, of = RECORDINGS[name]
         recording = path.with_suffix(".rrd")
-        _run(what, of, f"--record={recording}")
+        run_in(path.parent, *RECORDINGS[name], f"--record={recording}")
         viewer = Path(sys.executable).with_name("rerun")
-        flags = ["--screenshot-to", str(path), "--window-size", "1600x900"]
+        flags = ["--screenshot-to", str(picture), "--window-size", "1600x900", "--port", "auto"]
         with _open_screen("1600x900") as environment:
             command = [str(viewer), str(recording), *flags]
             subprocess.run(command, check=True, timeout=180, env=environment)
     elif name in WINDOWS:
         _photograph_window(WINDOWS[name], path)
+    elif name in FILMS:
+        run_in(path.parent, "run", *FILMS[name], f"--video={path}")
     else:
-        flags = FILMS.get(name) or STILLS[name]
-        _run("run", *flags, f"--{'video' if name in FILMS else 'screenshot'}={path}")
+        run_in(path.parent, "run", *STILLS[name], f"--screenshot={picture}")
+    if picture != path:
+        from PIL import Image
+
+        with Image.open(picture) as image:
+            image.thumbnail((1600, 900))
+            image.save(path, quality=80, method=6)
 
 
-def _run(*arguments: str) -> None:
-    """Run a command of buoyancy-mj."""
+def run_in(folder: Path, *arguments: str) -> None:
+    """Run a command of buoyancy-mj in a folder."""
     command = [sys.executable, "-m", "buoyancy_mj", *arguments]
-    subprocess.run(command, cwd=ROOT, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
 
 
 def _photograph_window(scene: str, path: Path) -> None:

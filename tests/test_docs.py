@@ -10,7 +10,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -26,13 +25,15 @@ from buoyancy_mj.engine.instances import instance_name, plugin_instances
 from buoyancy_mj.loads.datasets import DOFS
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import scene_from_table
+from tests.scripts import ROOT, script
 
-ROOT = Path(__file__).parent.parent
 PAGES = {
     path.relative_to(ROOT).as_posix(): path.read_text()
     for path in sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md")])
 }
 README = PAGES["README.md"]
+FIRST_HOUR = ROOT / "docs" / "first_hour.md"
+"""The page that has its reader write files."""
 COMMANDS = "docs/guide/command_line.md"
 """The page that shows a whole scene."""
 RECORDING = {"--record", "--no-record"}
@@ -95,16 +96,9 @@ def desk(tmp_path, monkeypatch):
         {"added_mass": matrices, "radiation_damping": matrices},
         coords={"omega": [0.7], "influenced_dof": names, "radiating_dof": names},
     ).to_netcdf(tmp_path / "boat.nc")
+    script("page_files").write_page_files(FIRST_HOUR, tmp_path)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def script(name):
-    """A module of the folder scripts."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / "scripts" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.mark.usefixtures("desk")
@@ -194,7 +188,7 @@ def understand(command, *words):
     if command in ("view", "sitl") or set(words) & {"--video", "--screenshot"}:
         return
     if command == "run":
-        shown = ("--live", "--foxglove")
+        shown = ("--live", "--foxglove", "--serve")
         words = [word for word in words if word not in shown] + ["--duration", "0.05"]
         if not set(words) & RECORDING:
             # a recording that nobody asks for takes longer than such a run

@@ -82,7 +82,7 @@ def run(
     files = _run_to_end(simulation, recordings)
 
     # its summary
-    summary = simulation.summary()
+    summary = simulation.summary(with_periods=True)
     report = simulation.mission.report if simulation.mission else None
     if as_json:
         others = {"mission": report.values()} if report else None
@@ -115,7 +115,7 @@ def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
     """Run to the end, and record; the files."""
     try:
         _run_frames(simulation, recordings)
-        return recordings.close(simulation.summary())
+        return recordings.close(simulation.summary(with_periods=True))
     except BaseException:
         # whatever ends the run, what was recorded stays
         recordings.keep(simulation.summary)

@@ -11,7 +11,7 @@ SPECTRA = "Spectra"
 """Name of the tab of spectra."""
 WIDTH, HEIGHT = 800.0, 806.0
 """Size of a tab in a window of 1600 x 900 [pixels]."""
-FRAME_WIDTH, FRAME_HEIGHT = 50.0, 46.0
+FRAME_WIDTH, FRAME_HEIGHT = 40.0, 46.0
 """What title and labels take of a view [pixels]."""
 ONE_COLUMN = 4
 """Most plots that stand in one column."""

@@ -105,6 +105,7 @@ class Recording:
         self._forces = [
             ForceDrawing(vehicle, name, run.buoyancy.causes) for vehicle, name in self._vehicles()
         ]
+        self._vehicle_lines = [plots.VehicleLines(*one) for one in self._vehicles()]
         self._lines: tuple[str, ...] | None = None
         self._times: Times | None = None
         self._draw_static()
@@ -147,14 +148,14 @@ class Recording:
             drawing.draw(self._log, frame)
 
         # the plots, whose lines are the same in all frames
-        values = [plots.values(vehicle, frame) for vehicle, _ in self._vehicles()]
+        values = [lines.measure(frame) for lines in self._vehicle_lines]
         if self._lines is None:
             self._lines = tuple(
-                plots.entity(line, name)
-                for (_, name), lines in zip(self._vehicles(), values, strict=True)
-                for line in lines
+                plots.entity(line, lines.name)
+                for lines, measured in zip(self._vehicle_lines, values, strict=True)
+                for line in measured
             )
-        self._log.plot(self._lines, [value for lines in values for value in lines.values()])
+        self._log.plot(self._lines, [value for measured in values for value in measured.values()])
         self._log.plot(self._entities, self._instruments.read(frame.data))
         self._spectra.add(frame)
         if time.monotonic() - self._sent >= self._every:

@@ -10,6 +10,7 @@ from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.palette import COLOURS, hue
+from buoyancy_mj.viz.ticks import choose_end
 
 PLOTS = {
     "surface": ("surface", "m^2/Hz"),
@@ -24,8 +25,8 @@ SEGMENTS = 4
 """Number of spectra that are averaged, each of a half overlapping window, in a long run."""
 LONG = 64.0
 """Length of a run from which on windows are averaged, in periods of the highest peak."""
-SHOWN = 0.999
-"""Part of the variance of all lines together that the axis of frequency shows."""
+SHOWN, AXIS = 0.99, 680.0
+"""Part of the variance of each line that the axis of frequency shows, and its length [pixels]."""
 
 
 class Spectra:
@@ -78,8 +79,8 @@ class Spectra:
         frequencies, densities = estimate_spectra(times, series)
         # bars of several vehicles stand side by side
         width = frequencies[1] / len(self._vehicles)
+        shown = _count_shown(frequencies, densities)
         for plot, (kind, (meaning, _)) in enumerate(PLOTS.items()):
-            shown = _count_shown(densities[:, :, plot])
             for i, (_, name) in enumerate(self._vehicles):
                 bars = rr.BarChart(
                     densities[:shown, i, plot],
@@ -115,14 +116,19 @@ def estimate_spectra(
     return frequencies, densities
 
 
-def _count_shown(densities: NDArray[np.float64]) -> int:
-    """Number of frequencies that hold nearly all of the variance, and some after them.
+def _count_shown(frequencies: NDArray[np.float64], densities: NDArray[np.float64]) -> int:
+    """Number of frequencies that hold nearly all of the variance of each line.
+
+    The axis goes on until it has labels enough.
 
     Args:
-        densities: densities (m, ...) at all frequencies.
+        frequencies: frequencies (m,) [Hz].
+        densities: densities (m, ...).
     """
-    sums = np.cumsum(densities.reshape(len(densities), -1).sum(axis=1))
-    return min(int(1.5 * np.searchsorted(sums, SHOWN * sums[-1])) + 4, len(densities))
+    sums = np.cumsum(densities.reshape(len(densities), -1), axis=0)
+    last = int((sums < SHOWN * sums[-1]).sum(axis=0).max())
+    end = choose_end(0.0, 1.1 * frequencies[last], 0.0, AXIS)
+    return int(np.searchsorted(frequencies, end)) + 1
 
 
 def _resample(

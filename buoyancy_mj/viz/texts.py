@@ -18,7 +18,8 @@ def write_summary(summary: Summary) -> Text:
     """Write a summary as a table: two rows beside each other for one vehicle, or a column each."""
     rows = summary.rows()
     if len(summary.vehicles) > 1:
-        names = (summary.scene, *summary.vehicles)
+        # the title of the scene would take the width of a vehicle
+        names = ("", *summary.vehicles)
         return Text(f"{_table(names, rows)}\n{summary.caption}\n", len(rows) + 1)
     half = -(-len(rows) // 2)
     blank = ("",) * len(rows[0])

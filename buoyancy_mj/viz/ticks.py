@@ -12,7 +12,7 @@ LABELS = 3
 """Number of labels that an axis has at least."""
 MARGIN = 0.06
 """Part of the range that stays free at each end, where a label would be cut."""
-TEXT_HEIGHT, TEXT_WIDTH = 22.0, 62.0
+TEXT_HEIGHT, TEXT_WIDTH = 22.0, 60.0
 """Distance of labels along an upright axis and along that of time, from which on the viewer draws
 them [pixels]."""
 TIME_STEPS = (
