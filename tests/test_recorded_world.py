@@ -17,6 +17,7 @@ from buoyancy_mj.submersion.wetted_surface import Placed, cut_waterlines, cut_we
 from buoyancy_mj.viz import eye as eyes
 from buoyancy_mj.viz import motes, sea_surface, sky
 from buoyancy_mj.viz.depth_tint import STEPS, DepthTint
+from buoyancy_mj.viz.height_fields import mesh_height_field
 from buoyancy_mj.viz.legend import WIDTH, Legend
 from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.motes import MoteDrawing
@@ -291,6 +292,49 @@ def test_motes_are_under_water_and_shown_to_an_eye_there():
     ((_, block),) = log.of(motes.ENTITY, "translation")
     assert heights.max() + block[0, 2] < 0.0
     assert log.of(motes.ENTITY, "radii")[0][1] > 0.0
+
+
+SEABED = """<mujoco><asset><hfield name="bed" nrow="2" ncol="3" size="6 4 2 1"
+elevation="0 1 0  0 .5 0"/></asset><worldbody>
+<geom name="floor" type="plane" size="0 0 1" pos="1 2 -7" rgba=".8 .7 .5 1"/>
+<geom name="shoal" type="hfield" hfield="bed" pos="0 0 -6"/>
+<body name="boat"><freejoint/><geom type="box" size=".4 .2 .1" mass="20"/></body>
+</worldbody></mujoco>"""
+
+
+def test_a_plane_without_end_is_a_floor_as_far_as_one_sees_wherever_the_vehicle_goes(tmp_path):
+    (tmp_path / "boat.xml").write_text(SEABED)
+    simulation = simulate("auv_drop_still", f"vehicle='{tmp_path / 'boat.xml'}'")
+    surroundings, log = Surroundings(simulation, place_at_start(simulation)), Kept()
+    surroundings.draw_static(log)
+    for frame in simulation.frames():
+        surroundings.draw(log, frame)
+        break
+    surroundings.eye.middle = surroundings.eye.middle + [100.0, 0.0, 0.0]
+    surroundings._geoms.draw(log)
+    (_, first), (_, second) = log.of("world/environment/floor", "translation")
+    assert first[0, 2] == second[0, 2] == -7.0
+    # by whole pairs of tiles, so that they stay
+    pairs = (second - first)[0] / (2.0 * surroundings.cell)
+    assert pairs[0] == pytest.approx(round(pairs[0]))
+    assert second[0, 0] - first[0, 0] == pytest.approx(100.0, abs=2.0 * surroundings.cell)
+    assert motes.ENTITY not in log.static
+
+
+def test_height_fields_are_drawn_as_high_as_the_engine_has_them():
+    model = mujoco.MjModel.from_xml_string(SEABED)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    points, faces = mesh_height_field(model, model.geom("shoal").id)
+    assert len(points) == 6
+    assert len(faces) == 4
+    hit, down = np.zeros(1, np.int32), np.array([0.0, 0.0, -1.0])
+    for point in points * [0.99, 0.99, 1.0] + [0.0, 0.0, -6.0]:
+        above = np.array([*point[:2], 10.0])
+        distance = mujoco.mj_ray(model, data, above, down, None, 1, -1, hit, None)
+        assert 10.0 - distance == pytest.approx(point[2], abs=0.05)
+    a, b, c = points[faces.T]
+    assert (np.cross(b - a, c - a)[:, 2] > 0.0).all()
 
 
 def test_floors_and_walls_have_squares_and_take_the_place_of_motes():

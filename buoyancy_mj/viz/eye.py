@@ -7,6 +7,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from buoyancy_mj.drawing.sea_mesh import HORIZON
 from buoyancy_mj.drawing.sight import clear_sight
 from buoyancy_mj.drawing.subject import Subject
 from buoyancy_mj.scenes.run import Run
@@ -19,7 +20,7 @@ FOVY = math.radians(55.0)
 """Angle that the viewer's eye takes from top to bottom [rad]."""
 ASPECT = 1.4
 """Width of the view over its height, about."""
-ROOM = 0.5, 0.85
+ROOM = 0.68, 0.85
 """Part of the picture that vehicles fill, from top to bottom and across."""
 PITCH = math.radians(14.0), math.radians(10.0)
 """Angle by which the eye stands higher than what it looks at [rad]: over water, and in it."""
@@ -30,6 +31,8 @@ LAG = np.array([0.4, 0.4, 3.0])
 """Times by which the eye follows late [s], along x, y and z: heave shows against the horizon."""
 FLAT = 5.0
 """Least distance of the eye over the height of crests."""
+WIDE = 60.0
+"""Least distance of the horizon over that of the eye."""
 SLACK = 0.4
 """Most that it lags behind, over the reach of the vehicles."""
 
@@ -57,6 +60,8 @@ class Eye:
         """How far the vehicles reach from there at the start [m]."""
         self.distance = find_distance(along, up)
         """How far it is from there [m]."""
+        self.horizon = max(HORIZON, WIDE * self.distance)
+        """How far it sees [m]."""
         self.level = water.level
         """Height of the still surface [m]."""
         self.crest = measure_crest(water)

@@ -11,9 +11,9 @@ from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.palette import COLOURS, NEUTRAL, Colour
 
 ENTITY = "legend"
-GAP, WIDTH, HEIGHT = 3.0, 84.0, 3.4
+GAP, WIDTH, HEIGHT = 3.0, 92.0, 3.7
 """Space between two names, and width and height of a row, in widths of a letter."""
-DROP = 1.3
+DROP = 1.4
 """How far a name hangs under its place, likewise."""
 PAPER, BACKGROUND = (235, 235, 235), (24, 30, 40)
 """Colours of what is no arrow, and behind the names."""

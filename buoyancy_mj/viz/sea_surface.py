@@ -6,7 +6,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
-from buoyancy_mj.drawing.sea_mesh import HORIZON, Band, join_rings, split_waves
+from buoyancy_mj.drawing.sea_mesh import Band, join_rings, split_waves
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz import sky
 from buoyancy_mj.viz.eye import Eye
@@ -50,7 +50,7 @@ class SurfaceDrawing:
         self._corners = np.vstack([np.zeros((1, 3), np.float32), _place_rings(radii)])
         self._faces = join_rings(count, SPOKES)
         # through the sky, without a gap
-        far = np.geomspace(self._radius, 1.1 * HORIZON, 8)
+        far = np.geomspace(self._radius, 1.05 * eye.horizon, 8)
         self._far, self._far_faces = _place_rings(far), join_rings(8, SPOKES)[SPOKES:] - 1
 
         # waves fade where cells are too long for them, and towards the rim

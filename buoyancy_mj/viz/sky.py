@@ -5,7 +5,6 @@ import rerun as rr
 from numpy.typing import NDArray
 
 from buoyancy_mj.drawing.looks import DAYLIGHT
-from buoyancy_mj.drawing.sea_mesh import HORIZON
 from buoyancy_mj.drawing.sky import shade_depths, shade_sky
 from buoyancy_mj.viz.log import Log
 
@@ -16,8 +15,8 @@ HEIGHTS = np.array([1, 2, 4, 6, 9, 12, 16, 20, 25, 30, 37, 45, 55, 65, 75, 90.0]
 """Angles over the horizon of its rings, and under it [degrees]."""
 
 
-def draw_sky(log: Log) -> None:
-    """Draw the dome, whose colours no light changes."""
+def draw_sky(log: Log, radius: float) -> None:
+    """Draw the dome, whose colours no light changes, with a radius [m]."""
     angles = np.radians(np.concatenate([-HEIGHTS[::-1], [0.0, 0.0], HEIGHTS]))
     around = np.linspace(0.0, 2.0 * np.pi, SPOKES + 1)
     flat, up = np.cos(angles)[:, None], np.sin(angles)[:, None]
@@ -31,7 +30,7 @@ def draw_sky(log: Log) -> None:
     log.keep(
         ENTITY,
         rr.Mesh3D(
-            vertex_positions=1.02 * HORIZON * rays,
+            vertex_positions=radius * rays,
             triangle_indices=_join_rings(len(angles), SPOKES + 1),
             vertex_colors=np.rint(255.0 * colours).astype(np.uint8),
         ),

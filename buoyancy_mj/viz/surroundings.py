@@ -32,7 +32,7 @@ class Surroundings:
         self.cell = choose_cell(self.eye.distance)
         """Side of the squares on the sea, and on floors and walls [m]."""
         self._surface = SurfaceDrawing(run.buoyancy.water, self.eye, self.cell)
-        self._geoms = StillGeoms(run.model, self.cell)
+        self._geoms = StillGeoms(run.model, self.eye, self.cell)
         self._motes = None if self._geoms.has_floor else MoteDrawing(self.eye)
 
     @property
@@ -42,7 +42,7 @@ class Surroundings:
 
     def draw_static(self, log: Log) -> None:
         """Draw what stays the same."""
-        draw_sky(log)
+        draw_sky(log, self.eye.horizon)
         self.eye.draw_static(log)
         self._geoms.draw_static(log)
         self._surface.draw_static(log)
@@ -53,6 +53,7 @@ class Surroundings:
         """Draw one frame."""
         centres = np.array([one.centre_of_mass for one in frame.vehicles.values()])
         self.eye.draw(log, centres, frame.time)
+        self._geoms.draw(log)
         self._surface.draw(log, frame.time)
         if self._motes is not None:
             self._motes.draw(log)

@@ -24,10 +24,10 @@ def tile_geom(geom: VisibleGeom, side: float) -> rr.Mesh3D:
     # the two axes along which each face lies, about
     across = np.abs(geom.normals @ geom.rotation.T).argmax(axis=1)
     along = np.array([[1, 2], [0, 2], [0, 1]])[across]
-    return texture(_paint_squares(), np.take_along_axis(points, along, axis=1) / (2.0 * side))
+    return texture(paint_tiles(), np.take_along_axis(points, along, axis=1) / (2.0 * side))
 
 
-def _paint_squares() -> NDArray[np.uint8]:
+def paint_tiles() -> NDArray[np.uint8]:
     """Two by two squares (PIXELS, PIXELS, 3), dark and light."""
     is_second = np.arange(PIXELS) >= PIXELS // 2
     shades = np.where(is_second[:, None] ^ is_second, DARK, 255).astype(np.uint8)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.bodies import find_mocap_bodies, find_moving_bodies
 from buoyancy_mj.hulls.geoms import read_geom_mesh
+from buoyancy_mj.viz.height_fields import mesh_height_field
 from buoyancy_mj.viz.triangles import SmoothMesh, rectangle, smooth_mesh
 
 SHOWN_GROUPS = 3
@@ -93,6 +94,8 @@ def choose_colour(
 def _mesh(model: mujoco.MjModel, geom: int) -> SmoothMesh | None:
     """The triangles of a geom in its frame; None if it has none."""
     is_plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
+    if model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_HFIELD:
+        return smooth_mesh(*mesh_height_field(model, geom))
     half = [side if side > 0.0 else ENDLESS for side in model.geom_size[geom, :2]]
     arrays = rectangle(half) if is_plane else read_geom_mesh(model, geom)
     if arrays is None:
