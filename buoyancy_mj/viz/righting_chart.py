@@ -117,7 +117,7 @@ class RightingChart:
         spots = np.array([self._place(heel, arm) for heel, arm, _ in marks])
         rows = 2 * number + np.arange(len(marks))
         # whole in the view, at the end of the line
-        ends = np.column_stack([spots[:, 0], -ROW * rows - 0.5 * DROP])
+        ends = np.column_stack([spots[:, 0], -ROW * rows])
         across = np.clip(spots[:, 0], ASIDE, WIDTH - ASIDE)
         places = np.column_stack([across, -ROW * (rows + 0.5) - DROP])
         points = rr.Points2D(spots, colors=[colour], radii=rr.Radius.ui_points(4.0))
