@@ -59,7 +59,10 @@ def test_a_light_raft_goes_with_long_waves_and_leans_with_their_slope(around):
     assert at(around, "heave", 180, 6.0) == pytest.approx((1.0, 0.0), abs=0.01)
     # the water at a crest runs with the wave, a quarter of a period after it was farthest back
     assert at(around, "surge", 0, 6.0) == (pytest.approx(1.0, abs=0.01), pytest.approx(90, abs=2))
-    assert at(around, "surge", 180, 6.0) == (pytest.approx(1.0, abs=0.01), pytest.approx(-90, abs=2))
+    assert at(around, "surge", 180, 6.0) == (
+        pytest.approx(1.0, abs=0.01),
+        pytest.approx(-90, abs=2),
+    )
     assert at(around, "sway", 90, 6.0) == (pytest.approx(1.0, abs=0.01), pytest.approx(90, abs=2))
     # bow down before a following crest has come, and after a head sea's
     assert at(around, "pitch", 0, 6.0) == (pytest.approx(1.0, abs=0.02), pytest.approx(-90, abs=2))
