@@ -15,7 +15,6 @@ from typer.testing import CliRunner
 from buoyancy_mj import DivergenceError, RecordingError, Simulation, read_scene
 from buoyancy_mj.cli import app
 from buoyancy_mj.scenes import catalog
-from buoyancy_mj.viz import blueprints
 from buoyancy_mj.viz import recording as recording_module
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.recording import Recording
@@ -298,26 +297,6 @@ def test_the_other_kinds_of_scene_record_too(tmp_path, scene):
     assert ("/world/environment/environment/floor_west" in found) == (scene == "auv_pool")
 
 
-def test_the_wet_and_the_waterline_are_drawn_as_they_are_whatever_method_finds_the_forces(tmp_path):
-    found = []
-    for chosen in ("exact", "convex_hull", "sections"):
-        simulation = Simulation(
-            read_scene(catalog.scenes()["auv_waves"], [f"method={chosen}", "duration=0.01"])
-        )
-        recording = Recording(simulation, tmp_path / f"{chosen}.rrd")
-        recording.add(next(simulation.frames()))
-        found.append({geom: wet.copy() for geom, wet in recording._bodies.wet.items()})
-        recording.close(simulation.summary())
-        assert rerun("verify", str(tmp_path / f"{chosen}.rrd")).returncode == 0
-        assert "/world/waterline" in entities(
-            rerun("print", "-vv", str(tmp_path / f"{chosen}.rrd")).stdout
-        )
-    exact, *others = found
-    for other in others:
-        assert exact.keys() == other.keys()
-        assert all((exact[geom] == other[geom]).all() for geom in exact)
-
-
 def test_names_may_hold_anything(tmp_path):
     (tmp_path / "odd.xml").write_text(
         """<mujoco><worldbody><body name="my boat/2"><freejoint/>
@@ -471,18 +450,3 @@ def test_foils_that_are_sites_are_in_it(tmp_path):
     found = entities(rerun("print", "-vv", str(path)).stdout)
     for name in ("hull", "wing_port", "wing_starboard", "fin"):
         assert f"/world/bodies/glider/{name}" in found, name
-
-
-@pytest.mark.parametrize(("height", "aim"), [(-0.1, 0.0), (-5.0, -4.6)])
-def test_the_camera_looks_at_the_surface_or_at_a_vehicle_that_is_deep(
-    height, aim, tmp_path, monkeypatch
-):
-    seen = []
-
-    def run_blueprint(title, look_at, *others, **options):
-        seen.append(look_at)
-        return blueprints.run_blueprint(title, look_at, *others, **options)
-
-    monkeypatch.setattr(recording_module, "run_blueprint", run_blueprint)
-    recorded(tmp_path / "run.rrd", "auv_drop_still", [*SHORT, f"start.position.2={height}"])
-    assert seen[0][2] == pytest.approx(aim, abs=0.15)

@@ -18,7 +18,7 @@ ROW, HEADER = 23.0, 84.0
 """Height of a row of a text's table, and of what stands above it [pixels]."""
 AWAY, RIGHT = np.array([-0.6, -1.3, 0.5]), np.array([1.3, -0.6, 0.0]) / np.hypot(1.3, 0.6)
 """Where the eye of an inspection is over the length of the vessel, and what it has on its right."""
-LEGEND_ROW = 32.0
+LEGEND_ROW = 30.0
 """Height of a row of the legend [pixels]."""
 WINDOW = 806.0
 """Height of what a window of 1600 x 900 shows of the layout [pixels]."""

@@ -28,6 +28,8 @@ BEARINGS = np.radians([-70.0, 70.0, -110.0, 110.0, -20.0, 160.0])
 From the side, since vehicles go ahead: a wall that they come to stays out of the way."""
 LAG = np.array([0.4, 0.4, 3.0])
 """Times by which the eye follows late [s], along x, y and z: heave shows against the horizon."""
+FLAT = 5.0
+"""Least distance of the eye over the height of crests."""
 SLACK = 0.4
 """Most that it lags behind, over the reach of the vehicles."""
 
@@ -59,6 +61,9 @@ class Eye:
         """Height of the still surface [m]."""
         self.crest = measure_crest(water)
         """How high crests are, but for rare ones [m]."""
+
+        # no crest between
+        self.distance = max(self.distance, FLAT * self.crest)
 
         # the side, whence nothing hides the vehicles
         rise = self._find_rise(up)
@@ -137,7 +142,9 @@ class Eye:
 
     def _find_rise(self, up: float) -> float:
         """How much higher than what it looks at the eye stands [m], clear of the surface."""
-        depth, clear = self.level - float(self.middle[2]), 1.2 * self.crest + 0.2 * up
+        clear = 1.2 * self.crest + 0.2 * up
+        # what is dropped comes down
+        depth = max(self.level - float(self.middle[2]), 0.0)
         if depth > 1.2 * up + self.crest:
             return min(self.distance * math.sin(PITCH[1]), depth - clear)
         rise = max(self.distance * math.sin(PITCH[0]), depth + clear)

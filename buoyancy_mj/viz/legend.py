@@ -11,9 +11,9 @@ from buoyancy_mj.viz.log import Log
 from buoyancy_mj.viz.palette import COLOURS, NEUTRAL, Colour
 
 ENTITY = "legend"
-GAP, WIDTH, HEIGHT = 4.0, 124.0, 5.0
+GAP, WIDTH, HEIGHT = 3.0, 84.0, 3.4
 """Space between two names, and width and height of a row, in widths of a letter."""
-DROP = 2.0
+DROP = 1.3
 """How far a name hangs under its place, likewise."""
 PAPER, BACKGROUND = (235, 235, 235), (24, 30, 40)
 """Colours of what is no arrow, and behind the names."""
@@ -68,12 +68,20 @@ def _list_names(run: Run, cell: float) -> Iterator[tuple[str, Colour]]:
     for cause in ("weight", *run.buoyancy.causes):
         yield cause.replace("_", " "), COLOURS.get(cause, NEUTRAL)
     if len(thrusters.find_thrusters(run.model)):
-        yield f"thrust, {thrusters.LONGER:g} x as long", thrusters.COLOUR
+        yield f"thrust ({thrusters.LONGER:g} x)", thrusters.COLOUR
     yield "contact", contacts.COLOUR
     vehicles = list(run.vehicles.values())
     if len(vehicles) == 1:
         length, weight = 0.5 * vehicles[0].length, vehicles[0].weight
-        yield f"an arrow of {length:.3g} m is {weight:.3g} N", PAPER
+        yield f"{length:.3g} m of arrow: {_describe_force(weight)}", PAPER
     else:
-        yield "half as long as a vehicle is its weight", PAPER
-    yield f"squares of {cell:g} m", PAPER
+        yield "half a vehicle of arrow: its weight", PAPER
+    yield f"squares {cell:g} m", PAPER
+
+
+def _describe_force(force: float) -> str:
+    """A force [N] in newtons, or in thousands or millions of them."""
+    for unit, size in (("MN", 1e6), ("kN", 1e3)):
+        if force >= size:
+            return f"{force / size:.3g} {unit}"
+    return f"{force:.3g} N"

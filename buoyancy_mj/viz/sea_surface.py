@@ -17,7 +17,7 @@ from buoyancy_mj.viz.textures import texture
 
 ENTITY, FAR = "world/water", "world/water/far"
 """The surface with its waves, and still water from there to the horizon."""
-SPOKES = 32
+SPOKES = 28
 """Number of corners around a ring."""
 INNER, OUTER = 0.25, 9.0
 """Radii of the first and of the last ring, over the distance of the eye."""
