@@ -27,7 +27,12 @@ from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
 
-@command()
+@command(
+    examples=(
+        "run auv_waves --video waves.mp4",
+        "run auv_waves --vehicle my_auv.xml --duration 20",
+    ),
+)
 def run(
     scene: SceneArgument,
     flags: RunFlags,
@@ -88,7 +93,13 @@ def run(
     print_files(files)
 
 
-@command("list")
+@command(
+    "list",
+    examples=(
+        "list",
+        "list | grep sauvc",
+    ),
+)
 def list_() -> None:
     """List the scenes and models that ship."""
     scenes = {name: read_scene(path).title for name, path in catalog.scenes().items()}
