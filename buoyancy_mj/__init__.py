@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from buoyancy_mj.errors import MethodError as MethodError
     from buoyancy_mj.errors import ModelError as ModelError
     from buoyancy_mj.errors import RecordingError as RecordingError
+    from buoyancy_mj.errors import ResponseError as ResponseError
     from buoyancy_mj.errors import SceneError as SceneError
     from buoyancy_mj.errors import SweepError as SweepError
     from buoyancy_mj.errors import WaterError as WaterError
@@ -51,6 +52,10 @@ if TYPE_CHECKING:
     from buoyancy_mj.loads.loads import Portion as Portion
     from buoyancy_mj.meshes.mesh import TriMesh as TriMesh
     from buoyancy_mj.meshes.repair import repair as repair
+    from buoyancy_mj.responses.decay import Decay as Decay
+    from buoyancy_mj.responses.decay import decay as decay
+    from buoyancy_mj.responses.respond import respond as respond
+    from buoyancy_mj.responses.responses import Responses as Responses
     from buoyancy_mj.scenes.fleet import Vehicle as Vehicle
     from buoyancy_mj.scenes.frames import Frame as Frame
     from buoyancy_mj.scenes.frames import VehicleFrame as VehicleFrame

@@ -64,6 +64,10 @@ class SweepError(BuoyancyError):
     """A sweep that makes no sense, or whose results cannot be kept."""
 
 
+class ResponseError(BuoyancyError):
+    """A response or a decay that cannot be measured, or an option of one that makes no sense."""
+
+
 class RecordingError(BuoyancyError):
     """A recording that cannot be written to its end."""
 

@@ -46,7 +46,7 @@ def test_run_prints_a_table_and_leaves_a_recording(run, tmp_path):
         "net weight",
         "peak draft",
         "final draft",
-        "CoG z range",
+        "heave, whole run",
         "real-time factor",
         "contact",
     ):

@@ -188,7 +188,7 @@ def understand(command, *words):
     if command in ("view", "sitl") or set(words) & {"--video", "--screenshot"}:
         return
     if command == "run":
-        shown = ("--live", "--foxglove")
+        shown = ("--live", "--foxglove", "--serve")
         words = [word for word in words if word not in shown] + ["--duration", "0.05"]
         if not set(words) & RECORDING:
             # a recording that nobody asks for takes longer than such a run

@@ -469,7 +469,7 @@ def test_a_sweep_has_columns_for_each_vehicle_and_reaches_the_fields_of_one(fold
         alone = Simulation(read_scene(sweep.path, [*sweep.settings, *settings]))
         list(alone.frames())
         values = alone.summary().values()
-        for name in ("one.mass", "one.peak_draft", "two.final_draft", "two.cog_z_range"):
+        for name in ("one.mass", "one.peak_draft", "two.final_draft", "two.heave_range"):
             assert float(row[name]) == pytest.approx(values[name], rel=1e-9, abs=1e-12), name
     assert len({row["one.mass"] for row in rows}) == 2
     assert len({row["two.peak_draft"] for row in rows}) == 2

@@ -149,7 +149,7 @@ def test_instruments_have_a_tab_with_a_plot_for_each_kind_and_unit(recorded):
             names += [one for (one,) in values] if column.endswith(":display_name") else []
     assert {
         "rov", "stone", "Sensors and controls", "sensors [m/s^2]", "sensors [m]", "sensors [s]",
-        "controls", "actuator forces [N]", "activations",
+        "controls [own units]", "actuator forces [N]", "activations [own units]",
     } <= set(names)  # fmt: skip
     assert "summary" not in names
 
@@ -246,7 +246,7 @@ def test_a_tendon_is_drawn_along_its_path_and_parted_by_pulleys():
 
 @pytest.mark.filterwarnings("ignore:RRD file has no footer")
 def test_nothing_is_logged_for_what_a_model_does_not_have(tmp_path, monkeypatch):
-    monkeypatch.setattr(rrd, "_add_footer", lambda _: None)
+    monkeypatch.setattr(rrd, "_add_footer", lambda *_: None)
     text = """<mujoco><worldbody><body name="box"><freejoint/>
     <geom type="box" size=".2 .2 .2" density="500"/></body></worldbody></mujoco>"""
     model, data = make(text)

@@ -395,7 +395,7 @@ def test_a_run_that_breaks_off_says_why_and_where_its_recording_is(tmp_path, mon
     monkeypatch.chdir(tmp_path)
     target, name = {
         "a frame is added": (BodyDrawing, "draw"),
-        "it is closed": (recording_module, "_summary_text"),
+        "it is closed": (recording_module, "write_summary"),
     }[when]
     calls = []
     original = getattr(target, name)

@@ -81,7 +81,7 @@ def test_each_row_is_what_a_run_of_its_own_gives(scene, over, tmp_path):
             "net_weight",
             "peak_draft",
             "final_draft",
-            "cog_z_range",
+            "heave_range",
             "simulated_time",
         ):
             assert float(row[name]) == pytest.approx(summary[name], rel=1e-12, abs=1e-12), name
@@ -387,7 +387,7 @@ class FullDisk:
 def test_a_full_disk_stops_a_sweep_at_a_whole_row(name, tmp_path, monkeypatch):
     opened = journal._open_locked
     monkeypatch.setattr(
-        journal, "_open_locked", lambda *a, **k: FullDisk(opened(*a, **k), room=500)
+        journal, "_open_locked", lambda *a, **k: FullDisk(opened(*a, **k), room=1800)
     )
     wanted = plan(tmp_path, "start.position.2=0.3:0.9:6", name=name)
     kept = tmp_path / ("out.csv" if name == "out.csv" else "out.partial.csv")

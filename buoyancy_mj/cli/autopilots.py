@@ -26,6 +26,7 @@ from buoyancy_mj.cli.flags import (
 )
 from buoyancy_mj.cli.recordings import Files, Recordings, StreamFlags
 from buoyancy_mj.cli.summaries import print_files, summary_json, summary_table
+from buoyancy_mj.cli.watching import ViewerFlags
 from buoyancy_mj.errors import AutopilotError, choices
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.fleet import Vehicle
@@ -88,14 +89,12 @@ def sitl(
     selection: SelectionFlags,
     autopilot: AutopilotFlags,
     streams: StreamFlags,
+    watching: ViewerFlags,
     record: Annotated[Path | None, typer.Option(help="Record to this file.")] = None,
     series: Annotated[
         Path | None,
         typer.Option(help="Write a row for each frame into this .csv or .parquet as well."),
     ] = None,
-    live: Annotated[
-        bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
-    ] = False,
     as_json: Json = False,
 ) -> None:
     """Let ArduPilot's software in the loop drive a vehicle, in lock-step over UDP.
@@ -104,6 +103,7 @@ def sitl(
     """
     check_recording_name(record)
     check_table_name(series)
+    watching.viewers.check()
     if autopilot.frame not in MOTOR_FRAMES:
         raise AutopilotError(
             f"unknown frame '{autopilot.frame}'; {choices(autopilot.frame, MOTOR_FRAMES)}"
@@ -124,7 +124,7 @@ def sitl(
                 session.simulation,
                 number_recording(record, starts),
                 number_recording(series, starts),
-                live=live,
+                viewers=watching.viewers,
                 streams=dataclasses.replace(streams, mcap=number_recording(streams.mcap, starts)),
             )
             packet = _fly(session, link, packet, autopilot, recordings, as_json=as_json)

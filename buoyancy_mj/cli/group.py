@@ -16,6 +16,8 @@ MODULES = {
     "view": "views",
     "inspect": "inspections",
     "ballast": "ballasts",
+    "respond": "responses",
+    "decay": "decays",
     "sitl": "autopilots",
     "sweep": "sweeps",
     "paper": "papers",

@@ -15,6 +15,7 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.viz.sinks import open_sinks
+from buoyancy_mj.viz.viewers import NOBODY, Viewers
 
 if TYPE_CHECKING:
     from buoyancy_mj.viz.ros.stream import RosStream
@@ -85,7 +86,7 @@ class Recordings:
         simulation: the run.
         record: the file for Rerun; None for none.
         series: the table; None for none.
-        live: whether to stream to a Rerun viewer.
+        viewers: where the run is watched while it goes on.
         streams: where the run goes as messages of ROS 2.
         films: how it is filmed.
         waits: whether the run waits for a Foxglove viewer, and goes no faster than real time.
@@ -100,7 +101,7 @@ class Recordings:
         record: Path | None = None,
         series: Path | None = None,
         *,
-        live: bool = False,
+        viewers: Viewers = NOBODY,
         streams: StreamFlags,
         films: FilmFlags | None = None,
         waits: bool = False,
@@ -113,7 +114,7 @@ class Recordings:
             self._stream = streams.open(simulation, waits=waits)
             if self._stream is not None:
                 undo.callback(self._stream.discard)
-            self._recording, self._series = open_sinks(simulation, record, series, live=live)
+            self._recording, self._series = open_sinks(simulation, record, series, viewers=viewers)
             undo.pop_all()
         if self._film is not None and self._film.kept:
             print_line(
@@ -123,11 +124,18 @@ class Recordings:
             place = f"ws://{self._stream.host}:{self._stream.port}"
             wait = "; the run begins when a panel shows something of it" if waits else ""
             print_line(err, f"open {place} in Foxglove, as a Foxglove WebSocket{wait}")
+        if self.page is not None:
+            print_line(err, f"open {self.page} in a browser")
         sinks = (self._recording, self._series, self._stream, self._film, self._still)
         self._adders = [sink.add for sink in sinks if sink is not None]
 
     def __bool__(self) -> bool:
         return bool(self._adders)
+
+    @property
+    def page(self) -> str | None:
+        """Address of the page at which the run is watched; None for none."""
+        return self._recording.page if self._recording is not None else None
 
     def add(self, frame: Frame) -> None:
         """Record one frame.

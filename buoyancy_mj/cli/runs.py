@@ -8,7 +8,7 @@ from rich.progress import TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from buoyancy_mj.cli.application import command
-from buoyancy_mj.cli.console import err, out, show_progress
+from buoyancy_mj.cli.console import err, out, print_line, show_progress
 from buoyancy_mj.cli.films import FilmFlags
 from buoyancy_mj.cli.flags import (
     Json,
@@ -19,8 +19,9 @@ from buoyancy_mj.cli.flags import (
     check_table_name,
 )
 from buoyancy_mj.cli.recordings import Files, Recordings, StreamFlags
-from buoyancy_mj.cli.signals import raise_received
+from buoyancy_mj.cli.signals import raise_received, wait_for_interrupt
 from buoyancy_mj.cli.summaries import mission_table, print_files, summary_json, summary_table
+from buoyancy_mj.cli.watching import ViewerFlags
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.scene import read_scene
@@ -34,6 +35,7 @@ def run(
     selection: SelectionFlags,
     streams: StreamFlags,
     films: FilmFlags,
+    watching: ViewerFlags,
     record: Annotated[
         Path | None, typer.Option(help="Record to this file instead of recordings/NAME.rrd.")
     ] = None,
@@ -44,9 +46,6 @@ def run(
         Path | None,
         typer.Option(help="Write a row for each frame into this .csv or .parquet as well."),
     ] = None,
-    live: Annotated[
-        bool, typer.Option("--live", help="Stream to a Rerun viewer while the scene runs.")
-    ] = False,
     through: Annotated[
         str,
         typer.Option(
@@ -61,6 +60,7 @@ def run(
         raise SceneError("--record and --no-record contradict each other; give one of them")
     check_recording_name(record)
     check_table_name(series)
+    watching.viewers.check()
 
     # the run
     path = catalog.scene_path(scene)
@@ -71,21 +71,30 @@ def run(
         simulation = Simulation(read_scene(path, settings), through=through, trust=flags.trust)
     target = None if no_record else record or Path("recordings") / f"{simulation.scene.stem}.rrd"
     recordings = Recordings(
-        simulation, target, series, live=live, streams=streams, films=films, waits=True
+        simulation,
+        target,
+        series,
+        viewers=watching.viewers,
+        streams=streams,
+        films=films,
+        waits=True,
     )
     files = _run_to_end(simulation, recordings)
 
     # its summary
-    summary = simulation.summary()
+    summary = simulation.summary(with_periods=True)
     report = simulation.mission.report if simulation.mission else None
     if as_json:
         others = {"mission": report.values()} if report else None
         typer.echo(summary_json(summary, files, others))
-        return
-    out.print(summary_table(summary))
-    if report is not None:
-        out.print(mission_table(report))
-    print_files(files)
+    else:
+        out.print(summary_table(summary))
+        if report is not None:
+            out.print(mission_table(report))
+        print_files(files)
+    if recordings.page is not None:
+        print_line(err, f"{recordings.page} is served until Ctrl-C")
+        wait_for_interrupt()
 
 
 @command("list")
@@ -106,7 +115,7 @@ def _run_to_end(simulation: Simulation, recordings: Recordings) -> Files:
     """Run to the end, and record; the files."""
     try:
         _run_frames(simulation, recordings)
-        return recordings.close(simulation.summary())
+        return recordings.close(simulation.summary(with_periods=True))
     except BaseException:
         # whatever ends the run, what was recorded stays
         recordings.keep(simulation.summary)

@@ -4,6 +4,7 @@ import _thread
 import signal
 import sys
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, NoReturn
@@ -68,6 +69,18 @@ def raise_received() -> None:
     """Raise the signal that came and did not get through, if there is one."""
     if _received:
         raise Stop(_received[0])
+
+
+def wait_for_interrupt() -> None:
+    """Wait for Ctrl-C, which ends no more than this; other signals are raised."""
+    try:
+        while True:
+            raise_received()
+            time.sleep(0.2)
+    except Stop as stop:
+        if stop.number != signal.SIGINT:
+            raise
+        _received.clear()
 
 
 def _stop(number: int, _: Any) -> NoReturn:

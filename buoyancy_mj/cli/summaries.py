@@ -1,6 +1,5 @@
 """Summaries of runs, as tables and as JSON."""
 
-import dataclasses
 import json
 import math
 from collections.abc import Mapping
@@ -47,7 +46,9 @@ def summary_json(summary: Summary, files: Files, others: Mapping[str, Any] | Non
     values: dict[str, Any] = summary.values()
     if len(summary.vehicles) > 1:
         # a table for each vehicle, in place of names with dots
-        values = dataclasses.asdict(summary)
+        own = tuple(f"{name}." for name in summary.vehicles)
+        values = {name: value for name, value in values.items() if not name.startswith(own)}
+        values["vehicles"] = {name: one.values() for name, one in summary.vehicles.items()}
     values |= {name: str(path) if path else None for name, path in files._asdict().items()}
     values |= others or {}
     return json.dumps(_drop_infinite(values), indent=2)

@@ -28,7 +28,8 @@ def sweep(
     over: Annotated[
         list[str],
         typer.Option(
-            metavar="KEY=a:b:n", help="Give a field n values from a to b; repeat for a grid."
+            metavar="KEY=a:b:n",
+            help="Give a field n values from a to b, or a list, v1,v2,v3; repeat for a grid.",
         ),
     ],
     out: Annotated[
@@ -39,6 +40,13 @@ def sweep(
     ],
     flags: RunFlags,
     selection: SelectionFlags,
+    measure: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="SENSOR",
+            help="Add columns of what this sensor measures, as gyro, or gyro.x; may be repeated.",
+        ),
+    ] = None,
     draws: Annotated[
         int | None,
         typer.Option(min=1, help="Draw this many random values between a and b, without a grid."),
@@ -68,7 +76,9 @@ def sweep(
     read_scene(path, settings)
     values = ranges.grid(fields) if draws is None else ranges.draws(fields, draws, seed)
     keys = tuple(field.key for field in fields)
-    plan = Sweep(path, settings, keys, tuple(values), out, trust=flags.trust)
+    plan = Sweep(
+        path, settings, keys, tuple(values), out, flags.trust, measure=tuple(measure or ())
+    )
 
     # the runs
     done, failures = 0, []

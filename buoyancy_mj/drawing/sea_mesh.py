@@ -55,7 +55,7 @@ class SeaMesh:
 
         self.radius = radius
         """Distance from the middle within which the surface is exact [m]."""
-        self.faces = _join_rings(len(radii), count)
+        self.faces = join_rings(len(radii), count)
         """Corners of its triangles (m, 3), counterclockwise from above; they stay."""
         angles = growth * np.arange(count)
         self._x = np.append(0.0, np.outer(radii, np.cos(angles)))
@@ -126,8 +126,11 @@ def split_waves(water: Water, cells: NDArray[np.float64]) -> list[Band]:
     return bands
 
 
-def _join_rings(rings: int, count: int) -> NDArray[np.uint32]:
-    """Triangles (m, 3) between a middle, vertex 0, and rings of `count` vertices each around it."""
+def join_rings(rings: int, count: int) -> NDArray[np.uint32]:
+    """Triangles (m, 3) between a middle, vertex 0, and rings of `count` vertices each around it.
+
+    The first `count` of them are those around the middle.
+    """
     here = np.arange(count)
     after = (here + 1) % count
     fan = np.column_stack([np.zeros(count, int), 1 + here, 1 + after])

@@ -2,5 +2,5 @@
 
 In: a model and its still water.
 Out: an `Inspection`: verdicts on geoms and meshes, statics, and their report and charts.
-May import: loads, statics, hulls, meshes, sea, errors, files.
+May import: loads, statics, hulls, meshes, sea, plotting, errors, files.
 """

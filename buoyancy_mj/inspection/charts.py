@@ -10,16 +10,22 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from buoyancy_mj.files import replace_file, require_own
+from buoyancy_mj.files import require_own
 from buoyancy_mj.inspection.inspection import Inspection
 from buoyancy_mj.inspection.vessels import VesselInspection
+from buoyancy_mj.plotting.style import (
+    BLUE,
+    FAINT,
+    SOFTWARE,
+    VERMILLION,
+    new_figure,
+    save_figure,
+    use_style,
+)
 from buoyancy_mj.statics.curves import compute_hydrostatic_curves, compute_waterline
 from buoyancy_mj.statics.hydrostatics import Hydrostatics
 from buoyancy_mj.statics.righting import RightingArm
 from buoyancy_mj.statics.vessel import Vessel
-
-SOFTWARE = "buoyancy_mj"
-"""What the charts say of the software that made them."""
 
 
 def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
@@ -31,7 +37,7 @@ def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
         OSError: a file cannot be written, or there is one that was not made here.
     """
     files = []
-    with matplotlib.rc_context({"axes.grid": True, "grid.alpha": 0.3, "font.size": 9}):
+    with use_style():
         for vessel in inspection.vessels:
             if vessel.refused:
                 continue
@@ -40,8 +46,7 @@ def draw_charts(inspection: Inspection, folder: Path) -> list[tuple[str, Path]]:
             for kind, caption, figure in _draw_figures(vessel):
                 path = folder / f"{stem}_{kind}.png"
                 require_own(path, SOFTWARE)
-                with replace_file(path) as part:
-                    figure.savefig(part, dpi=150, metadata={"Software": SOFTWARE})
+                save_figure(figure, path)
                 files.append((f"{caption} of '{name}'", path))
     return files
 
@@ -61,7 +66,7 @@ def _draw_figures(inspection: VesselInspection) -> Iterator[tuple[str, str, Figu
 
 def _start_figure() -> tuple[Figure, Axes]:
     """An empty figure with axes."""
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    figure = new_figure(7.0, 4.4)
     return figure, figure.subplots()
 
 
@@ -69,19 +74,20 @@ def _draw_curves(vessel: Vessel, rotation: NDArray[np.float64], draft: float | N
     """Volume and waterplane area over draft, with the draft at rest and the volume that floats."""
     curves = compute_hydrostatic_curves(vessel, rotation)
     figure, axes = _start_figure()
-    axes.plot(1e3 * curves.volume, curves.draft, color="C0")
-    axes.set_xlabel("volume [l]", color="C0")
+    axes.plot(1e3 * curves.volume, curves.draft, color=BLUE)
+    axes.set_xlabel("volume [l]", color=BLUE)
     axes.set_ylabel("draft [m]")
 
     beside = axes.twiny()
+    beside.spines.top.set_visible(True)
     beside.grid(visible=False)
-    beside.plot(curves.waterplane_area, curves.draft, color="C1")
-    beside.set_xlabel("waterplane area [m^2]", color="C1")
+    beside.plot(curves.waterplane_area, curves.draft, color=VERMILLION)
+    beside.set_xlabel("waterplane area [m^2]", color=VERMILLION)
 
     if draft is not None:
-        axes.axhline(draft, color="0.3", linestyle="--", linewidth=1.0)
+        axes.axhline(draft, color=FAINT, linestyle="--", linewidth=1.0)
     floats = 1e3 * vessel.mass / vessel.water.density
-    axes.axvline(floats, color="C0", linestyle=":", linewidth=1.0)
+    axes.axvline(floats, color=BLUE, linestyle=":", linewidth=1.0)
     return figure
 
 
@@ -90,27 +96,27 @@ def _draw_waterlines(vessel: Vessel, rotation: NDArray[np.float64], draft: float
     low, high = vessel.heights(rotation)
     tall = high - low
     figure, axes = _start_figure()
-    colours = matplotlib.colormaps["viridis"]
+    colours = matplotlib.colormaps["cividis"]
     for part in np.linspace(0.1, 0.9, 9):
         for segment in compute_waterline(vessel, rotation, part * tall):
             axes.plot(*segment.T, color=colours(part), linewidth=0.8)
     if draft is not None and 0.0 < draft < tall:
         for segment in compute_waterline(vessel, rotation, draft):
-            axes.plot(*segment.T, color="C3", linewidth=1.8)
+            axes.plot(*segment.T, color=VERMILLION, linewidth=1.8)
 
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
     title = "waterlines at a tenth to nine tenths of the height"
-    axes.set_title(title if draft is None else f"{title}; at rest in red")
+    axes.set_title(title if draft is None else f"{title}; bold at rest")
     return figure
 
 
 def _draw_righting(arm: RightingArm, at: Hydrostatics) -> Figure:
     """The GZ curve, its slope GM at rest, where it vanishes and where sites go under."""
     figure, axes = _start_figure()
-    axes.plot(np.degrees(arm.heel), arm.gz, color="C0")
-    axes.axhline(0.0, color="0.3", linewidth=0.8)
+    axes.plot(np.degrees(arm.heel), arm.gz, color=BLUE)
+    axes.axhline(0.0, color=FAINT, linewidth=0.8)
     axes.set_ylim(*_pad(arm.gz))
 
     # the tangent at rest reaches GM at a heel of 1 rad
@@ -118,17 +124,17 @@ def _draw_righting(arm: RightingArm, at: Hydrostatics) -> Figure:
     axes.plot(
         [0.0, math.degrees(1.0)],
         [0.0, at.GMt],
-        color="0.5",
+        color=FAINT,
         linestyle=":",
         linewidth=1.0,
         label=label,
     )
 
     if math.isfinite(arm.vanishing):
-        _mark_heel(axes, arm.vanishing, "vanishing stability", color="C3", linestyle="--")
+        _mark_heel(axes, arm.vanishing, "vanishing stability", color=VERMILLION, linestyle="--")
     immersed = {name: heel for name, heel in arm.immersed.items() if math.isfinite(heel)}
     for i, (name, heel) in enumerate(immersed.items()):
-        _mark_heel(axes, heel, f"{name} under", color=f"C{4 + i % 5}", linestyle="-.")
+        _mark_heel(axes, heel, f"{name} under", color=f"C{2 + i % 4}", linestyle="-.")
 
     axes.set_xlabel("heel [degrees]")
     axes.set_ylabel("righting arm GZ [m]")

@@ -13,8 +13,6 @@ from buoyancy_mj.paper.study import Result, Study, Table
 
 HEADER = ("claim", "the paper", "measured here", "holds?", "command")
 """Header of the table of claims."""
-DPI = 110
-"""Resolution of the figures [dots per inch]."""
 
 
 def reproduce(
@@ -72,9 +70,10 @@ def _write_result(folder: Path, study: Study, result: Result) -> None:
     for name, table in result.tables.items():
         _write_csv(folder / f"{name}.csv", list(table), _format_rows(table))
     if study.draw is not None:
-        picture = folder / f"{study.name}.png"
-        with replace_file(picture) as part:
-            study.draw(result).savefig(part, dpi=DPI, metadata={"Software": None})
+        from buoyancy_mj.plotting.style import save_figure, use_style  # needs Matplotlib
+
+        with use_style():
+            save_figure(study.draw(result), folder / f"{study.name}.png")
 
 
 def _format_rows(table: Table) -> Iterable[tuple[str, ...]]:

@@ -123,13 +123,14 @@ class _Stepping:
     def _roll_out(self, numbers: Sequence[int], steps: slice) -> None:
         """Take steps with some simulations, and keep what they leave."""
         recorded = self._make_trajectories(len(numbers), steps.stop - steps.start)._asdict()
+        asked = {name: values for name, values in recorded.items() if values.size}
         try:
             self._batch.rollout(
-                steps.stop - steps.start, record=list(recorded), ids=numbers, out=recorded
+                steps.stop - steps.start, record=list(asked), ids=numbers, out=asked
             )
         except batch.SimulationError as error:
             self.failures |= {int(i): _find_reason(self._batch.error(i)) for i in error.ids}
-        for name, values in recorded.items():
+        for name, values in asked.items():
             getattr(self.trajectories, name)[numbers, steps] = values
 
         # bad values end one
@@ -143,6 +144,8 @@ class _Stepping:
         arrays = []
         for name in Trajectory._fields:
             value = np.asarray(getattr(self._simulations[0].data, name))
+            if name == "sensordata" and not self._simulations[0].measures_sensors:
+                value = value[:0]
             kind = np.int32 if value.dtype.kind == "i" else np.float64
             arrays.append(np.zeros((count, steps, *value.shape), kind))
         return Trajectory(*arrays)
@@ -190,7 +193,8 @@ def _can_batch(simulation: Simulation) -> bool:
 def _trajectory_size(simulation: Simulation) -> float:
     """Memory of the trajectory of a whole run [bytes]."""
     model = simulation.model
-    return float(8 * simulation.steps * (15 * model.nbody + model.nq + 1))
+    sensors = model.nsensordata if simulation.measures_sensors else 0
+    return float(8 * simulation.steps * (15 * model.nbody + model.nq + 1 + sensors))
 
 
 def _batch_key(simulation: Simulation) -> tuple[float, ...]:

@@ -210,7 +210,7 @@ def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequenc
     import pyarrow as pa  # comes along with Rerun
     from pyarrow import parquet
 
-    columns = {name: [_read_cell(name, row[name]) for row in rows] for name in header}
+    columns = {name: _read_column(name, [row[name] for row in rows]) for name in header}
     try:
         with replace_file(path) as part:
             parquet.write_table(pa.table(columns), part)
@@ -221,6 +221,14 @@ def write_parquet(path: Path, rows: Sequence[Mapping[str, str]], header: Sequenc
 def read_row(row: Mapping[str, Any]) -> dict[str, Any]:
     """A row as a file gives it back: numbers as floats, and None for an empty cell."""
     return {name: _read_cell(name, text) for name, text in _as_texts(row).items()}
+
+
+def _read_column(name: str, texts: Sequence[str]) -> Sequence[str | float | None]:
+    """What the cells of a column hold: numbers, or texts if one of them is none."""
+    try:
+        return [_read_cell(name, text) for text in texts]
+    except ValueError:
+        return texts
 
 
 def _read_cell(name: str, text: str) -> str | float | None:

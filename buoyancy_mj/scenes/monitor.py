@@ -6,12 +6,14 @@ import mujoco
 import numpy as np
 
 from buoyancy_mj.hulls.bodies import find_moving_bodies
+from buoyancy_mj.kernels.drafts import Corners
 from buoyancy_mj.kernels.entries.steps import add_instant, add_trajectory
 from buoyancy_mj.kernels.entries.views import Table
 from buoyancy_mj.kernels.watching import FIXED, OWN, Watched
 from buoyancy_mj.scenes.corners import gather_corners
 from buoyancy_mj.scenes.fleet import Vehicle
-from buoyancy_mj.scenes.summary import LAST, VehicleSummary
+from buoyancy_mj.scenes.seakeeping import Seakeeping
+from buoyancy_mj.scenes.summary import VehicleSummary
 from buoyancy_mj.scenes.trajectory import Poses, Trajectory
 from buoyancy_mj.sea.water import Water
 
@@ -20,7 +22,7 @@ _ROOM = 256
 
 
 class Monitor:
-    """The draft of a vehicle, the height of its centre of gravity and its contacts, over a run.
+    """The draft of a vehicle and its contacts, over a run.
 
     Compiled code keeps them step by step, see `kernels.entries.steps`.
 
@@ -34,12 +36,13 @@ class Monitor:
         self.draft = math.nan
         """Depth of the lowest point of the hulls in the last instant [m]; negative above water."""
         self._vehicle = vehicle
+        corners = gather_corners(vehicle, water)
         owners = np.zeros(model.ngeom, np.int64)
         owners[~find_moving_bodies(model)[model.geom_bodyid]] = FIXED
         owners[np.isin(model.geom_bodyid, vehicle.bodies)] = OWN
         self._table = Table(
             Watched(
-                corners=gather_corners(vehicle, water),
+                corners=corners,
                 bodies=vehicle.bodies,
                 masses=vehicle.masses,
                 mass=vehicle.mass,
@@ -69,25 +72,22 @@ class Monitor:
         first = float(self._table.arrays.first_contact[0])
         return None if math.isnan(first) else first
 
-    def reserve(self, count: int) -> int:
-        """Make room for as many more poses; the address of the `Watched` that has it.
+    @property
+    def corners(self) -> Corners:
+        """The corners of the vehicle that can be deepest."""
+        return self._table.arrays.corners
 
-        Poses older than the end over which the summary looks are given up for it.
-        """
+    def reserve(self, count: int) -> int:
+        """Make room for the heights of as many more poses; the address of the `Watched` has it."""
         arrays = self._table.arrays
-        seen = int(arrays.seen[0])
-        if seen + count > len(arrays.times):
-            times, heights = arrays.times[:seen], arrays.heights[:seen]
-            late = times >= np.max(times, initial=0.0) - 1.5 * LAST
-            kept = int(late.sum())
-            room = max(len(arrays.times), 2 * (kept + count))
-            grown = [np.concatenate([old[late], np.zeros(room - kept)]) for old in (times, heights)]
-            arrays.seen[0] = kept
-            self._table = Table(arrays._replace(times=grown[0], heights=grown[1]))
+        # the heights of before are of no use any more
+        arrays.seen[0] = 0
+        if count > len(arrays.times):
+            self._table = Table(arrays._replace(times=np.zeros(count), heights=np.zeros(count)))
         return self._table.address
 
     def add_poses(self, poses: Poses, time: float) -> None:
-        """Keep the draft and the height of the centre of gravity in poses at a time [s]."""
+        """Keep the draft in poses at a time [s]."""
         self.draft = add_instant(self.reserve(1), *poses, time)
 
     def add_trajectory(self, trajectory: Trajectory, timestep: float) -> None:
@@ -109,11 +109,14 @@ class Monitor:
             if math.isnan(known.first_contact[0]):
                 known.first_contact[0] = time
 
-    def summary(self, start: float, updates_at_limits: int | None = None) -> VehicleSummary:
+    def summary(
+        self, height: float, seakeeping: Seakeeping, updates_at_limits: int | None = None
+    ) -> VehicleSummary:
         """The run so far.
 
         Args:
-            start: time from which the range of heights is taken [s], at most `LAST` ago.
+            height: height of the vehicle's hulls [m].
+            seakeeping: how the vehicle moved.
             updates_at_limits: what the controller knows, see `VehicleSummary`.
         """
         vehicle = self._vehicle
@@ -121,18 +124,11 @@ class Monitor:
             mass=vehicle.mass,
             displacement=vehicle.displacement,
             net_weight=vehicle.weight - vehicle.displacement * vehicle.gravity,
+            height=height,
             peak_draft=self.peak_draft,
             final_draft=self.draft,
-            cog_z_range=self.height_range(start),
+            seakeeping=seakeeping,
             contact_steps=self.contact_steps,
             first_contact=self.first_contact,
             updates_at_limits=updates_at_limits,
         )
-
-    def height_range(self, start: float) -> float:
-        """Highest less lowest centre of gravity [m] from a time [s] on; NaN without poses."""
-        arrays = self._table.arrays
-        seen = int(arrays.seen[0])
-        late = arrays.times[:seen] >= start - 1e-9
-        heights = arrays.heights[:seen][late]
-        return float(np.ptp(heights)) if len(heights) else math.nan

@@ -172,6 +172,7 @@ def objective(
     out: str | Path | None = None,
     on: str = LOCAL,
     trust: bool = False,
+    measure: Sequence[str] = (),
 ) -> Objective:
     """Make a number of a run a function of fields of its scene, for an optimiser to minimise.
 
@@ -186,10 +187,11 @@ def objective(
         out: a .csv file of a row for each run; None for none.
         on: where the runs are run, as for `Sweep.run`.
         trust: whether to run the Python files that the scene names as controllers.
+        measure: names of sensors whose numbers become columns.
 
     Raises:
-        SceneError: the scene cannot be read, has no such field, or names a controller that is not
-            trusted.
+        SceneError: the scene cannot be read, has no such field or sensor, or names a controller
+            that is not trusted.
         SweepError: a range, a column, a file or a place that makes no sense.
 
     Example:
@@ -205,7 +207,7 @@ def objective(
     keys = tuple(one.key for one in ranges)
     middle = tuple(0.5 * (one.low + one.high) for one in ranges)
     path = catalog.scene_path(str(scene))
-    variations = vary(path, tuple(settings), keys, [middle], trust=trust)
+    variations = vary(path, tuple(settings), keys, [middle], trust=trust, measure=measure)
     if not callable(minimise) and minimise not in variations.results:
         raise SweepError(
             f"minimise is {describe(minimise)}; {choices(minimise, variations.results)}"
@@ -223,14 +225,18 @@ def _read_ranges(over: Sequence[str]) -> list[FieldRange]:
         )
     ranges = [parse_range(text) for text in over]
     for one in ranges:
-        span = f"over {one.key}={one.low:g}:{one.high:g}"
+        if one.listed:
+            raise SweepError(
+                f"over {one.text} is a list, and an optimiser chooses between bounds; give "
+                f"{one.key}=a:b"
+            )
         if one.count:
             raise SweepError(
-                f"{span}:{one.count} has a number of values, which an optimiser does not use; "
+                f"over {one.text} has a number of values, which an optimiser does not use; "
                 f"leave out ':{one.count}'"
             )
         if not one.low < one.high:
-            raise SweepError(f"{span} has no room; give KEY=a:b with a below b")
+            raise SweepError(f"over {one.text} has no room; give KEY=a:b with a below b")
     keys = [one.key for one in ranges]
     if len(set(keys)) < len(keys):
         raise SweepError(f"a field is given twice: {', '.join(keys)}; give each once")

@@ -1,4 +1,4 @@
-"""The values that a sweep gives to fields of a scene: a grid, or random draws."""
+"""The values that a sweep gives to fields of a scene: a grid, a list, or random draws."""
 
 import dataclasses
 import itertools
@@ -9,6 +9,9 @@ import numpy as np
 
 from buoyancy_mj.errors import SweepError, describe
 from buoyancy_mj.values import read_text
+
+Value = float | str
+"""What a field of a run may be given."""
 
 MOST_RUNS = 1_000_000
 """Most runs of one sweep."""
@@ -25,35 +28,51 @@ class FieldRange:
     high: float
     """Last value."""
     count: int
-    """Number of values in a grid, evenly spaced; random draws do not use it."""
+    """Number of values in a grid; random draws do not use it."""
+    listed: tuple[Value, ...] = ()
+    """Values one by one; evenly spaced ones if there are none."""
 
     @property
-    def values(self) -> list[float]:
+    def values(self) -> list[Value]:
         """The values in a grid."""
-        values: list[float] = np.linspace(self.low, self.high, self.count).tolist()
+        if self.listed:
+            return list(self.listed)
+        values: list[Value] = np.linspace(self.low, self.high, self.count).tolist()
         return values
+
+    @property
+    def text(self) -> str:
+        """The field and its values, as they are given."""
+        if self.listed:
+            return f"{self.key}={','.join(map(_write, self.listed))}"
+        return f"{self.key}={self.low:g}:{self.high:g}{f':{self.count}' if self.count else ''}"
 
 
 def parse_range(text: str) -> FieldRange:
-    """Parse 'KEY=a:b:n', n values from a to b, or 'KEY=a:b' for random draws.
+    """Parse 'KEY=a:b:n', n values from a to b, 'KEY=v1,v2,v3', or 'KEY=a:b' for random draws.
 
     Raises:
-        SweepError: the text is neither.
+        SweepError: the text is none of them.
     """
     key, _, span = read_text(SweepError, "--over", text).partition("=")
     try:
+        if "," in span:
+            listed = _parse_list(span)
+            if not key.strip():
+                raise ValueError
+            return FieldRange(key.strip(), math.nan, math.nan, len(listed), listed)
         low, high, count = _parse_span(span)
         if not key.strip():
             raise ValueError
     except ValueError:
         raise SweepError(
             f"--over is {describe(text)}; it must be KEY=a:b:n, n values from a to b, as "
-            "start.position.2=0:0.5:6, or KEY=a:b with --draws"
+            "start.position.2=0:0.5:6, or a list KEY=v1,v2,v3, or KEY=a:b with --draws"
         ) from None
     return FieldRange(key.strip(), low, high, count)
 
 
-def grid(ranges: Sequence[FieldRange]) -> list[tuple[float, ...]]:
+def grid(ranges: Sequence[FieldRange]) -> list[tuple[Value, ...]]:
     """All combinations of values, the last field fastest.
 
     Raises:
@@ -62,14 +81,13 @@ def grid(ranges: Sequence[FieldRange]) -> list[tuple[float, ...]]:
     for one in ranges:
         if one.count == 0:
             raise SweepError(
-                f"--over {one.key}={one.low:g}:{one.high:g} has no number of values; add it (:n), "
-                "or give --draws"
+                f"--over {one.text} has no number of values; add it (:n), or give --draws"
             )
     _check_runs(math.prod(one.count for one in ranges))
     return list(itertools.product(*(one.values for one in ranges)))
 
 
-def draws(ranges: Sequence[FieldRange], count: int, seed: int) -> list[tuple[float, ...]]:
+def draws(ranges: Sequence[FieldRange], count: int, seed: int) -> list[tuple[Value, ...]]:
     """Random combinations of values, each uniform in its range; the same for the same seed.
 
     Raises:
@@ -77,6 +95,11 @@ def draws(ranges: Sequence[FieldRange], count: int, seed: int) -> list[tuple[flo
             draws, or a seed below 0.
     """
     for one in ranges:
+        if one.listed:
+            raise SweepError(
+                f"--over {one.text} is a list, which --draws does not use; give {one.key}=a:b, or "
+                "leave out --draws"
+            )
         if one.count:
             raise SweepError(
                 f"--over {one.key}={one.low:g}:{one.high:g}:{one.count} has a number of values, "
@@ -112,3 +135,22 @@ def _parse_span(span: str) -> tuple[float, float, int]:
     if count < 1:
         raise ValueError
     return low, high, count
+
+
+def _parse_list(span: str) -> tuple[Value, ...]:
+    """The values of 'v1,v2,v3', numbers or words; a ValueError where they make no sense."""
+    words = [word.strip() for word in span.split(",")]
+    if not all(words) or len(set(words)) < len(words):
+        raise ValueError
+    try:
+        numbers = [float(word) for word in words]
+    except ValueError:
+        return tuple(words)
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError
+    return tuple(numbers)
+
+
+def _write(value: Value) -> str:
+    """A value as it is given."""
+    return value if isinstance(value, str) else f"{value:g}"

@@ -3,7 +3,7 @@
 import functools
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 import mujoco
@@ -26,11 +26,14 @@ from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles
 from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.frames import Frame, take_only
 from buoyancy_mj.scenes.lookout import Lookout
+from buoyancy_mj.scenes.meters import Meters
+from buoyancy_mj.scenes.natural_periods import Periods, find_natural_periods
 from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.steering import Steering
-from buoyancy_mj.scenes.summary import LAST, Summary
-from buoyancy_mj.scenes.trajectory import Trajectory, poses_of
+from buoyancy_mj.scenes.summary import Summary
+from buoyancy_mj.scenes.tape import LENGTH
+from buoyancy_mj.scenes.trajectory import Poses, Trajectory, poses_of
 from buoyancy_mj.vehicle.control.controller import Controller
 
 BLOCK_TIME = 0.1
@@ -45,10 +48,11 @@ class Simulation(ReadOnly):
         through: where the water's forces enter; by 'qfrc_passive' the water is a part of the model,
             by 'xfrc_applied' a callback, see `Buoyancy.installed`.
         trust: whether to run the Python files that the scene names as controllers.
+        measure: names of sensors of which the summary tells, as 'gyro', or 'gyro.x'.
 
     Raises:
         ModelError, MeshError, SceneError: what `assemble` and `Buoyancy` raise; also a vehicle
-            whose displacement is absurd for its mass.
+            whose displacement is absurd for its mass, and a sensor that is not there.
         SceneError, ControlError: a controller that is not trusted, or cannot steer its vehicle.
         EngineError: there is no such `through`.
 
@@ -56,7 +60,14 @@ class Simulation(ReadOnly):
         `drafts = [frame.draft for frame in Simulation(read_scene(path)).frames()]`
     """
 
-    def __init__(self, scene: Scene, *, through: str = PASSIVE, trust: bool = False) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        through: str = PASSIVE,
+        trust: bool = False,
+        measure: Sequence[str] = (),
+    ) -> None:
         self.scene = scene
         """The scene."""
         self.model, self.data, afloat = assemble(scene, with_water=through == PASSIVE)
@@ -87,7 +98,19 @@ class Simulation(ReadOnly):
         warn_of_obstacles(self.model, start, self.vehicles, scene.water.level)
         self._limits = Limits(scene, self.model, start)
         self._lookout = Lookout(self.data, self._limits, self._source.monitors.values())
-        self._is_seen = True
+        self._meters = Meters(
+            self.model,
+            start,
+            self.data,
+            {
+                name: (self.vehicles[name], one.corners)
+                for name, one in self._source.monitors.items()
+            },
+            self.buoyancy.water,
+            scene.duration,
+            measure,
+        )
+        self._present: Poses | None = poses_of(start)
         self._wall_time = 0.0
 
         # who watches
@@ -153,6 +176,11 @@ class Simulation(ReadOnly):
         """Number of timesteps of the whole run."""
         return max(1, round(self.scene.duration / self.scene.timestep))
 
+    @property
+    def measures_sensors(self) -> bool:
+        """Whether the summary tells of sensors."""
+        return self._meters.with_sensors
+
     def frames(self) -> Iterator[Frame]:
         """Run the scene; a frame at time 0, then at the record rate, and one at the end.
 
@@ -194,7 +222,7 @@ class Simulation(ReadOnly):
             # twice as many until they take long enough
             count = int(count * min(2.0, BLOCK_TIME / (time.perf_counter() - begun)))
         self._source.see(self.data, self._forward)
-        self._is_seen = True
+        self._present = poses_of(self._source.data)
         self._wall_time = time.perf_counter() - started
         return self.summary()
 
@@ -222,7 +250,7 @@ class Simulation(ReadOnly):
         left = count
         while left:
             # natively as far as nobody has to be asked
-            some = left if mission is None else 1
+            some = min(left, LENGTH) if mission is None else 1
             if steering is not None:
                 some = min(some, steering.update(self.data))
             self._step_natively(some)
@@ -234,15 +262,19 @@ class Simulation(ReadOnly):
 
     def _step_natively(self, count: int) -> None:
         """Take timesteps with the water acting, and see what each leaves."""
-        model, data, step, look = self.model, self.data, mujoco.mj_step, self._lookout.look
+        model, data, step = self.model, self.data, mujoco.mj_step
+        look, tape = self._lookout.look, self._meters.tape
+        take, keep = tape.take, tape.keep
         self._lookout.reserve(count)
-        self._is_seen = False
+        tape.wind(data.time)
+        self._present = None
         with self._lend_water(), raise_causes():
             for _ in range(count):
                 before = data.time
                 step(model, data)
                 # a step leaves the poses of its beginning
                 look(before, data.time)
+                keep(take())
 
     def replay(self, trajectory: Trajectory, wall_time: float) -> None:
         """Take over a whole run that was stepped elsewhere, for the summary.
@@ -260,6 +292,7 @@ class Simulation(ReadOnly):
         self._limits.check_trajectory(trajectory, timestep)
         for monitor in self._source.monitors.values():
             monitor.add_trajectory(trajectory, timestep)
+        self._meters.add_trajectory(trajectory)
         starts = np.vstack([self.data.qpos[None], trajectory.qpos])
         for step in np.flatnonzero(trajectory.ncon):
             self._source.data.qpos[:] = starts[step]
@@ -271,7 +304,7 @@ class Simulation(ReadOnly):
         self.data.qpos[:] = trajectory.qpos[-1]
         self.data.time = len(trajectory.qpos) * timestep
         mujoco.mj_fwdPosition(self.model, self.data)
-        poses = poses_of(self.data)
+        poses = self._present = poses_of(self.data)
         self._limits.check_poses(poses, float(self.data.time))
         for monitor in self._source.monitors.values():
             monitor.add_poses(poses, float(self.data.time))
@@ -285,29 +318,44 @@ class Simulation(ReadOnly):
                 reason: see `Limits`.
         """
         frame = self._source.take(self.data, self._forward)
-        self._is_seen = True
+        self._present = poses_of(self._source.data)
         return frame
 
-    def summary(self) -> Summary:
-        """Sum up the run so far."""
-        end = float(self.data.time)
-        if not self._is_seen:
+    def summary(self, *, with_periods: bool = False) -> Summary:
+        """Sum up the run so far.
+
+        Args:
+            with_periods: whether to find the natural periods of the vehicles too, from their
+                statics, which takes some milliseconds for each.
+        """
+        now = float(self.data.time)
+        monitors = self._source.monitors
+        if self._present is None:
             # the draft in the poses that the last step left
-            for monitor in self._source.monitors.values():
-                monitor.add_poses(poses_of(self.data), end - self.model.opt.timestep)
-            self._is_seen = True
+            for monitor in monitors.values():
+                monitor.add_poses(poses_of(self.data), now - self.model.opt.timestep)
+        measured, heights = self._meters.measure(now, self._present), self._meters.heights
         at_limits = {} if self._steering is None else self._steering.at_limits
         return Summary(
             scene=self.scene.title,
             method=self.scene.method.name,
+            sea=self._meters.sea,
             vehicles={
-                name: monitor.summary(end - LAST, at_limits.get(name))
-                for name, monitor in self._source.monitors.items()
+                name: monitor.summary(heights[name], measured[name], at_limits.get(name))
+                for name, monitor in monitors.items()
             },
-            simulated_time=end,
+            simulated_time=now,
             wall_time=self._wall_time,
-            real_time_factor=end / self._wall_time if self._wall_time else math.nan,
+            real_time_factor=now / self._wall_time if self._wall_time else math.nan,
+            sensors=self._meters.measure_sensors(now),
+            natural_periods=self._natural_periods if with_periods else {},
         )
+
+    @functools.cached_property
+    def _natural_periods(self) -> dict[str, Periods]:
+        """Natural periods of the vehicles, by their names."""
+        hulls, water = self.buoyancy.hulls, self.buoyancy.water
+        return find_natural_periods(self.model, hulls, self.vehicles, water)
 
     def _list_frames(self) -> Iterator[int]:
         """The steps after which frames are due: at the record rate, and the last."""

@@ -4,10 +4,13 @@ import dataclasses
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from buoyancy_mj.scenes import summary_rows
 from buoyancy_mj.scenes.frames import take_only
+from buoyancy_mj.scenes.natural_periods import Periods
+from buoyancy_mj.scenes.sea_state import SeaState
+from buoyancy_mj.scenes.seakeeping import NAMES, Seakeeping
+from buoyancy_mj.scenes.sensor_measures import SensorMeasure
 
-LAST = 2.0
-"""Length of the end of a run [s] over which the summary takes the range of heights."""
 _OF_STEERED = "updates_at_limits"
 """What the summary says only of vehicles that have a controller."""
 
@@ -22,12 +25,14 @@ class VehicleSummary:
     """Mass of water that its hulls displace when fully under water [kg]."""
     net_weight: float
     """Weight less greatest buoyancy [N]: positive sinks, negative floats."""
+    height: float
+    """Height of its hulls from lowest to highest [m], in its own frame."""
     peak_draft: float
-    """Greatest depth of its lowest point [m]."""
+    """Greatest depth of its lowest point in the whole run [m]."""
     final_draft: float
     """Depth of its lowest point at the end [m]."""
-    cog_z_range: float
-    """Highest less lowest z of its centre of gravity over the last 2 s [m]."""
+    seakeeping: Seakeeping
+    """How it moved; NaN if no step was taken."""
     contact_steps: int
     """Number of steps in which it touched the bottom or another fixed thing."""
     first_contact: float | None
@@ -35,25 +40,11 @@ class VehicleSummary:
     updates_at_limits: int | None = None
     """Number of updates of its controller in which a control was at a limit; None without one."""
 
-    def rows(self) -> list[tuple[str, str]]:
-        """The numbers as a table: names, and values with units."""
-        verdict = "sinks" if self.net_weight > 0.0 else "floats"
-        contact = (
-            f"{self.contact_steps} steps, first at {self.first_contact:.2f} s"
-            if self.contact_steps
-            else "none"
-        )
-        limits = self.updates_at_limits
-        return [
-            ("mass", f"{self.mass:.3f} kg"),
-            ("displacement, fully under water", f"{self.displacement:.3f} kg"),
-            ("net weight, fully under water", f"{self.net_weight:+.2f} N ({verdict})"),
-            ("peak draft", f"{self.peak_draft:.3f} m"),
-            ("final draft", f"{self.final_draft:.3f} m"),
-            (f"CoG z range, last {LAST:g} s", f"{self.cog_z_range:.4f} m"),
-            *([] if limits is None else [("controls at their limits", f"{limits} updates")]),
-            ("contact with the bottom or walls", contact),
-        ]
+    def values(self) -> dict[str, Any]:
+        """All numbers by the names that they have in tables, those of `Seakeeping` among them."""
+        own = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        values = own | self.seakeeping.values()
+        return {name: values[name] for name in _list_names()}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -68,6 +59,8 @@ class Summary:
     """Title of the scene."""
     method: str
     """Name of the method that finds the submersion."""
+    sea: SeaState
+    """How high and long the waves were."""
     vehicles: Mapping[str, VehicleSummary]
     """Each vehicle by its name."""
     simulated_time: float
@@ -76,6 +69,10 @@ class Summary:
     """Time that the run took [s], with whatever was done with its frames."""
     real_time_factor: float
     """Simulated over wall time."""
+    sensors: Mapping[str, SensorMeasure] = dataclasses.field(default_factory=dict)
+    """What the sensors measured that were asked for, by the names of their numbers."""
+    natural_periods: Mapping[str, Periods] = dataclasses.field(default_factory=dict)
+    """Of each vehicle that floats, if they were asked for; see `Simulation.summary`."""
 
     @property
     def mass(self) -> float:
@@ -103,9 +100,9 @@ class Summary:
         return take_only(self.vehicles).final_draft
 
     @property
-    def cog_z_range(self) -> float:
-        """Highest less lowest z of the only vehicle's centre of gravity over the last 2 s [m]."""
-        return take_only(self.vehicles).cog_z_range
+    def seakeeping(self) -> Seakeeping:
+        """How the only vehicle moved."""
+        return take_only(self.vehicles).seakeeping
 
     @property
     def contact_steps(self) -> int:
@@ -126,51 +123,39 @@ class Summary:
         """The summary as a table: names, then the value of each vehicle with its unit.
 
         What holds for the whole run stands once: for several vehicles in `caption`, and here for
-        the only one.
+        the only one, whose values are compared with what they are to be judged by.
         """
-        tables = [vehicle.rows() for vehicle in self.vehicles.values()]
-        names = max((dict(table) for table in tables), key=len)
-        rows = [(name, *(dict(table).get(name, "") for table in tables)) for name in names]
-        if len(tables) > 1:
-            return rows
-        *numbers, contact = rows
-        return [
-            ("method", self.method),
-            *numbers,
-            ("simulated time", f"{self.simulated_time:.2f} s"),
-            ("real-time factor", f"{self.real_time_factor:.1f} x"),
-            contact,
-        ]
+        return summary_rows.list_rows(self)
 
     @property
     def caption(self) -> str:
-        """What holds for the whole run, in one line."""
-        return (
-            f"method {self.method}, {self.simulated_time:.2f} s simulated at "
-            f"{self.real_time_factor:.1f} x real time"
-        )
+        """What holds for the whole run, in a line or two."""
+        return summary_rows.write_caption(self)
 
     def values(self) -> dict[str, Any]:
         """All numbers by name; of several vehicles each has its own, called NAME.number."""
-        values = {}
         steered = [name for name, one in self.vehicles.items() if one.updates_at_limits is not None]
-        for name in list_values(list(self.vehicles), steered):
-            vehicle, _, number = name.rpartition(".")
-            values[name] = getattr(self.vehicles[vehicle] if vehicle else self, number)
+        numbers = {name: one.values() for name, one in self.vehicles.items()}
+        flat = {f"{name}.{key}": own[key] for name, own in numbers.items() for key in own}
+        if len(numbers) == 1:
+            (flat,) = numbers.values()
+        names = list_values(list(self.vehicles), steered)
+        values = {name: flat[name] if name in flat else getattr(self, name) for name in names}
+        for name, measure in self.sensors.items():
+            values |= dict(zip(list_sensor_values([name]), measure, strict=True))
         return values
 
 
 def list_values(vehicles: Sequence[str], steered: Sequence[str] = ()) -> list[str]:
-    """The names of the values of a summary in their order.
+    """The names of the values of a summary in their order, without those of sensors.
 
     Args:
         vehicles: names of all vehicles.
         steered: names of those that have a controller.
     """
-    names = [field.name for field in dataclasses.fields(VehicleSummary)]
     times = ["simulated_time", "wall_time", "real_time_factor"]
     own = {
-        vehicle: [name for name in names if name != _OF_STEERED or vehicle in steered]
+        vehicle: [name for name in _list_names() if name != _OF_STEERED or vehicle in steered]
         for vehicle in vehicles
     }
     if len(vehicles) == 1:
@@ -180,3 +165,15 @@ def list_values(vehicles: Sequence[str], steered: Sequence[str] = ()) -> list[st
         return ["scene", "method", *others, *times, *contacts]
     of_vehicles = [f"{vehicle}.{name}" for vehicle in vehicles for name in own[vehicle]]
     return ["scene", "method", *times, *of_vehicles]
+
+
+def list_sensor_values(channels: Sequence[str]) -> list[str]:
+    """The names of the values of numbers of sensors: 'gyro.x.mean', 'gyro.x.least' ..."""
+    return [f"{channel}.{field}" for channel in channels for field in SensorMeasure._fields]
+
+
+def _list_names() -> list[str]:
+    """Names of the numbers of a vehicle in tables."""
+    names = [field.name for field in dataclasses.fields(VehicleSummary)]
+    at = names.index("seakeeping")
+    return [*names[:at], *NAMES, *names[at + 1 :]]

@@ -36,6 +36,8 @@ class Trajectory(NamedTuple):
     """Coordinates at the end of each step (steps, nq)."""
     ncon: NDArray[np.int32]
     """Number of contacts in each step (steps,)."""
+    sensordata: NDArray[np.float64]
+    """What sensors measured in each step (steps, nsensordata); (steps, 0) where none is asked."""
 
     def poses(self, step: int) -> Poses:
         """The poses at the beginning of a step."""

@@ -2,6 +2,7 @@
 
 import dataclasses
 import hashlib
+import json
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -12,12 +13,14 @@ from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.assembly import assemble
 from buoyancy_mj.scenes.batches import run_simulations
 from buoyancy_mj.scenes.linear_algebra import on_one_thread
+from buoyancy_mj.scenes.ranges import Value
 from buoyancy_mj.scenes.scene import Scene, read_scene
+from buoyancy_mj.scenes.sensor_measures import find_channels
 from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.steering import check_trust
-from buoyancy_mj.scenes.summary import list_values
+from buoyancy_mj.scenes.summary import list_sensor_values, list_values
 
-Values = tuple[float, ...]
+Values = tuple[Value, ...]
 """The values of a run, one for each field that varies."""
 
 _NO_COLUMNS = ("scene", "wall_time", "real_time_factor")
@@ -48,6 +51,8 @@ class Variations:
     """A short text of all that the runs have in common."""
     results: tuple[str, ...]
     """Columns of the summary; with several vehicles each has NAME.column."""
+    sensors: tuple[str, ...] = ()
+    """Names of the sensors that are measured."""
     folder: str = ""
     """Where the scene's files lie that came from another machine; reasons leave it out."""
 
@@ -85,7 +90,8 @@ class Variations:
         simulations: dict[int, Simulation] = {}
         for run, own in values.items():
             try:
-                simulations[run] = Simulation(self.read_scene(own), trust=self.trust)
+                scene = self.read_scene(own)
+                simulations[run] = Simulation(scene, trust=self.trust, measure=self.sensors)
             except BuoyancyError as error:
                 if not _is_of_values(error):
                     raise UntriedError(self._leave_folder_out(str(error))) from error
@@ -124,6 +130,7 @@ def vary(
     some: Sequence[Values],
     *,
     trust: bool,
+    measure: Sequence[str] = (),
 ) -> Variations:
     """Look at a scene whose fields `keys` vary.
 
@@ -133,29 +140,32 @@ def vary(
         keys: keys of the fields that vary.
         some: values of some runs; the first that can be assembled says which vehicles float.
         trust: whether to run the Python files that the scene names as controllers.
+        measure: names of sensors that become columns, as for `Simulation`.
 
     Raises:
-        SceneError: the scene cannot be read, a key that it does not have or that takes no number,
-            or a controller that is not trusted.
+        SceneError: the scene cannot be read, a key that it does not have or whose values are of
+            another type, a controller that is not trusted, or a sensor that is not there.
     """
     scene = read_scene(path, settings)
     check_trust(scene, trust=trust)
     _check_keys(path, settings, keys, some)
 
     # columns
-    vehicles = _name_vehicles(path, settings, keys, some)
+    vehicles, channels = _name_columns(path, settings, keys, some, measure)
     steered = [control.vehicle or vehicles[0] for control in scene.control]
     names = list_values(vehicles, steered)
     if scene.mission is not None:
         names += _OF_MISSION
+    names += list_sensor_values(channels)
     results = tuple(name for name in names if name not in (*_NO_COLUMNS, *keys))
     digest = _digest(path, settings, keys, scene)
-    return Variations(path, settings, keys, trust, digest, results)
+    return Variations(path, settings, keys, trust, digest, results, tuple(measure))
 
 
 def _read_scene(path: Path, settings: Sequence[str], keys: Sequence[str], values: Values) -> Scene:
     """The scene with the values of one run."""
-    varied = (f"{key}={value!r}" for key, value in zip(keys, values, strict=True))
+    # a text in quotes is TOML as well as JSON
+    varied = (f"{key}={json.dumps(value)}" for key, value in zip(keys, values, strict=True))
     return read_scene(path, [*settings, *varied])
 
 
@@ -172,10 +182,14 @@ def _check_keys(
         return
 
 
-def _name_vehicles(
-    path: Path, settings: Sequence[str], keys: Sequence[str], some: Sequence[Values]
-) -> list[str]:
-    """Names of the vehicles, as in the first run that can be assembled."""
+def _name_columns(
+    path: Path,
+    settings: Sequence[str],
+    keys: Sequence[str],
+    some: Sequence[Values],
+    measure: Sequence[str],
+) -> tuple[list[str], list[str]]:
+    """Names of the vehicles and of the sensors' numbers, as in the first run that is assembled."""
     names = [""]
     for values in some:
         try:
@@ -184,11 +198,13 @@ def _name_vehicles(
             with warnings.catch_warnings():
                 # the run itself will give them
                 warnings.simplefilter("ignore", BuoyancyWarning)
-                return [group.name for group in assemble(scene).afloat]
+                assembled = assemble(scene)
         except BuoyancyError:
             # the row of that run will say why
             continue
-    return names
+        channels = find_channels(assembled.model, measure)
+        return [group.name for group in assembled.afloat], list(channels)
+    return names, []
 
 
 def _digest(path: Path, settings: tuple[str, ...], keys: tuple[str, ...], scene: Scene) -> str:

@@ -1,5 +1,6 @@
 """The wetted surface of a mesh as triangles, and its waterline: what an eye would see wet."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +31,7 @@ def cut_wetted_surface(
     Returns:
         Triangles (n, 3, 3) and pieces of the waterline (k, 2, 3) [m], world frame.
     """
-    cut = _cut_faces(mesh, position, rotation, water, time)
+    cut = _cut_faces(_place(mesh, position, rotation), mesh.faces, water, time)
     p, (a, b), one = cut.corners, cut.ends, cut.wet_corners == 1
 
     # whole faces; of those cut a triangle with one corner wet, a quadrangle with two
@@ -45,15 +46,33 @@ def cut_wetted_surface(
     return triangles, np.stack([a, b], axis=1)
 
 
-def cut_waterline(
-    mesh: TriMesh,
-    position: NDArray[np.float64],
-    rotation: NDArray[np.float64],
-    water: Water,
-    time: float,
-) -> NDArray[np.float64]:
-    """The pieces of the waterline (k, 2, 3) [m] that `cut_wetted_surface` gives, alone."""
-    return np.stack(_cut_faces(mesh, position, rotation, water, time).ends, axis=1)
+class Placed(NamedTuple):
+    """A mesh where it is."""
+
+    mesh: TriMesh
+    """The hull, in its own frame."""
+    position: NDArray[np.float64]
+    """Origin of the mesh's frame (3,) [m], world frame."""
+    rotation: NDArray[np.float64]
+    """Rotation world_from_mesh (3, 3), or row-major (9,)."""
+
+
+def cut_waterlines(hulls: Sequence[Placed], water: Water, time: float) -> NDArray[np.float64]:
+    """The pieces of the waterlines (k, 2, 3) [m] that `cut_wetted_surface` gives, of all hulls.
+
+    Args:
+        hulls: meshes, with their poses; all at once takes less time than one by one.
+        water: the sea.
+        time: time of the waves [s].
+    """
+    if not hulls:
+        return np.zeros((0, 2, 3))
+    points = np.concatenate([_place(*hull) for hull in hulls])
+    starts = np.cumsum([0, *(len(hull.mesh.vertices) for hull in hulls[:-1])])
+    faces = np.concatenate(
+        [hull.mesh.faces + start for hull, start in zip(hulls, starts, strict=True)]
+    )
+    return np.stack(_cut_faces(points, faces, water, time).ends, axis=1)
 
 
 class _Cut(NamedTuple):
@@ -71,21 +90,24 @@ class _Cut(NamedTuple):
     """Ends of the waterline on each, (k, 3) [m]."""
 
 
+def _place(
+    mesh: TriMesh, position: NDArray[np.float64], rotation: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Corners of a mesh (n, 3) [m], world frame."""
+    points: NDArray[np.float64] = mesh.vertices @ np.reshape(rotation, (3, 3)).T + position
+    return points
+
+
 def _cut_faces(
-    mesh: TriMesh,
-    position: NDArray[np.float64],
-    rotation: NDArray[np.float64],
-    water: Water,
-    time: float,
+    points: NDArray[np.float64], faces: NDArray[np.integer], water: Water, time: float
 ) -> _Cut:
     """Cut faces where the depth, linear on each, is zero."""
     # depths of all corners
-    points = mesh.vertices @ np.asarray(rotation, float).reshape(3, 3).T + position
     depths = water.depth(points, time)
-    one, two, three = (depths > 0.0)[mesh.faces.T]
+    one, two, three = (depths > 0.0)[faces.T]
     whole = one & two & three
     cut = np.flatnonzero((one | two | three) & ~whole)
-    corners, d = points[mesh.faces[cut]], depths[mesh.faces[cut]]
+    corners, d = points[faces[cut]], depths[faces[cut]]
     wet = d > 0.0
     count = wet.sum(axis=1)
 

@@ -13,6 +13,7 @@ from buoyancy_mj.hulls.geoms import find_hulls
 from buoyancy_mj.loads.added_mass_estimates import estimate_added_mass
 from buoyancy_mj.loads.damping import Damping
 from buoyancy_mj.loads.damping_arrays import resolve_damping
+from buoyancy_mj.plotting.style import new_figure
 from buoyancy_mj.validation.case import Case, Row
 from buoyancy_mj.validation.runs import build_body
 
@@ -160,7 +161,7 @@ def _compare_added_mass() -> Sequence[Row]:
 
 def _draw() -> Figure:
     """Draw estimates against published coefficients of both tables."""
-    figure = Figure(figsize=(9.0, 4.0), layout="constrained")
+    figure = new_figure(9.0, 4.0)
     left, right = figure.subplots(1, 2)
     _draw_table(left, "C_D", DRAG_COEFFICIENTS, estimate_drag_coefficients())
     _draw_table(right, "C_A", ADDED_MASS_COEFFICIENTS, estimate_added_mass_coefficients())
@@ -181,7 +182,6 @@ def _draw_table(
         xlim=(0.0, top),
         ylim=(0.0, top),
     )
-    axes.grid(alpha=0.3)
 
 
 CASES = (

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from buoyancy_mj.engine.buoyancy import Buoyancy
+from buoyancy_mj.plotting.style import new_figure
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.validation.case import Case, Row
 
@@ -121,7 +122,7 @@ def _compare_wedges() -> Sequence[Row]:
 
 def _draw_wedges() -> Figure:
     """Draw the force on wedges beside published values."""
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    figure = new_figure(6.0, 4.0)
     axes = figure.subplots()
     angles = list(WEDGE_FORCES)
     axes.plot(angles, list(WEDGE_FORCES.values()), "k^", label="Zhao and Faltinsen")
@@ -129,7 +130,6 @@ def _draw_wedges() -> Figure:
         axes.plot(angles, [wedge_force(a, widening) for a in angles], "o-", label=label)
     axes.set(xlabel="deadrise [deg]", ylabel="force over rho V^3 t and length", yscale="log")
     axes.legend()
-    axes.grid(alpha=0.3)
     return figure
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.loads.damping import Damping
+from buoyancy_mj.plotting.style import new_figure
 from buoyancy_mj.scenes import catalog
 from buoyancy_mj.scenes.specs import read_spec
 from buoyancy_mj.sea.water import Water
@@ -134,7 +135,7 @@ def _compare_decay(height: float, damping: Damping = _UNDRAGGED) -> Sequence[Row
 
 def _draw_decay() -> Figure:
     """Draw the heave beside the published crossings, troughs and crests."""
-    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
+    figure = new_figure(9.0, 3.8)
     for axes, (height, published) in zip(figure.subplots(1, 2), DECAYS.items(), strict=True):
         axes.plot(*decay(height), label="here")
         axes.plot(published.crossings, np.zeros(3), "kx", label=published.source)
@@ -144,8 +145,7 @@ def _draw_decay() -> Figure:
         axes.set(
             xlabel="time [s]", ylabel="heave [m]", xlim=(0.0, 12.0), title=f"let go {height:g} m up"
         )
-        axes.legend(fontsize=7)
-        axes.grid(alpha=0.3)
+        axes.legend()
     return figure
 
 
@@ -191,7 +191,7 @@ def _compare_response() -> Sequence[Row]:
 
 def _draw_response() -> Figure:
     """Draw the heave in waves by all models of wave pressure."""
-    figure = Figure(figsize=(6.0, 4.0), layout="constrained")
+    figure = new_figure(6.0, 4.0)
     axes = figure.subplots()
     axes.plot(PERIODS, LINEAR_RESPONSE, "k--", label="linear potential flow")
     axes.plot(PERIODS, NONLINEAR_RESPONSE, "k^", label="MARIN, nonlinear")
@@ -199,7 +199,6 @@ def _draw_response() -> Figure:
         axes.plot(PERIODS, response(pressure), "o-", markersize=3, label=f"here, {pressure}")
     axes.set(xlabel="period of the wave [s]", ylabel="heave over amplitude", ylim=(0.0, 4.0))
     axes.legend()
-    axes.grid(alpha=0.3)
     return figure
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from buoyancy_mj.errors import BuoyancyError, choices
 from buoyancy_mj.files import replace_file, require_own
+from buoyancy_mj.plotting.style import save_figure, use_style
 from buoyancy_mj.validation import (
     bluerov2_heavy,
     coefficients,
@@ -48,8 +49,6 @@ PAGE = "validation.md"
 """Name of the page."""
 PICTURES = "validation"
 """Folder of the pictures, beside the page."""
-DPI = 110
-"""Resolution of the pictures [dots per inch]."""
 
 
 def validate(
@@ -101,8 +100,8 @@ def _write(folder: Path, results: Mapping[str, Sequence[Row]]) -> None:
         for name, case in CASES.items():
             if case.draw is not None:
                 picture = folder / PICTURES / f"{name}.png"
-                with replace_file(picture) as part:
-                    case.draw().savefig(part, dpi=DPI, metadata={"Software": None})
+                with use_style():
+                    save_figure(case.draw(), picture)
         with replace_file(folder / PAGE) as part:
             part.write_text(render_page(results))
     except OSError as error:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.loads.damping import Damping
+from buoyancy_mj.plotting.style import new_figure
 from buoyancy_mj.sea.water import Water
 from buoyancy_mj.statics.hydrostatics import hydrostatics
 from buoyancy_mj.validation.case import Case, Row
@@ -217,14 +218,13 @@ def _compare() -> Sequence[Row]:
 
 def _draw() -> Figure:
     """Draw the decays, and the measured amplitudes."""
-    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
+    figure = new_figure(9.0, 3.8)
     both = ((21338, AT_REST, "without speed"), (21340, UNDER_WAY, f"at {SPEED:g} m/s"))
     for axes, (run, amplitudes, title) in zip(figure.subplots(1, 2), both, strict=True):
         axes.plot(*decay(run), linewidth=1.0, label="here")
         axes.plot(list(amplitudes), list(amplitudes.values()), "kx", label="measured amplitude")
         axes.set(xlabel="time [s]", ylabel="roll [deg]", title=title)
-        axes.legend(fontsize=8)
-        axes.grid(alpha=0.3)
+        axes.legend()
     return figure
 
 

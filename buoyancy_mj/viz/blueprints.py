@@ -1,57 +1,60 @@
 """How the Rerun viewer is laid out for a run and for an inspection."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
+from buoyancy_mj.viz.eye import ENTITY
+from buoyancy_mj.viz.legend import Legend
 from buoyancy_mj.viz.log import TIMELINE
-from buoyancy_mj.viz.plots import list_plots
+from buoyancy_mj.viz.righting_chart import RightingChart
+from buoyancy_mj.viz.surroundings import Surroundings
 
-MOTION, INSTRUMENTS = "Motion and forces", "Sensors and controls"
-"""Names of the tabs of plots."""
-MOST_IN_COLUMN = 6
-"""Most plots of instruments that stand in one column."""
-MOST_IN_LEGEND = 4
-"""Most lines of instruments that a legend names; more would cover the lines."""
+BACKGROUND = (24, 30, 40)
+"""Colour behind an inspection."""
+ROW, HEADER = 23.0, 84.0
+"""Height of a row of a text's table, and of what stands above it [pixels]."""
+AWAY, RIGHT = np.array([-0.6, -1.3, 0.5]), np.array([1.3, -0.6, 0.0]) / np.hypot(1.3, 0.6)
+"""Where the eye of an inspection is over the length of the vessel, and what it has on its right."""
+LEGEND_ROW = 32.0
+"""Height of a row of the legend [pixels]."""
+WINDOW = 806.0
+"""Height of what a window of 1600 x 900 shows of the layout [pixels]."""
+MOST_TEXT = 0.5
+"""Greatest part of it that texts take."""
 
 
 def run_blueprint(
     title: str,
-    look_at: NDArray[np.float64],
-    size: float,
+    surroundings: Surroundings,
+    legend: Legend,
     *,
     texts: Sequence[str],
-    vehicles: Sequence[str],
-    instruments: Mapping[str, Sequence[str]],
+    rows: int,
+    tabs: Sequence[rrb.Container],
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 
     Args:
         title: name of the view of the world.
-        look_at: point at which it looks (3,) [m].
-        size: length of what it shows [m], a few of which lie between the eye and that point.
+        surroundings: what is seen around the vehicles, and whence.
+        legend: what arrows mean.
         texts: entities of the texts.
-        vehicles: names of several vehicles, each of which has a tab of plots; none for one vehicle.
-        instruments: entities of each plot of sensors and actuators, by its title; they have a tab
-            of their own.
+        rows: number of rows of the longest table in a text, all of which are to be seen.
+        tabs: the plots.
     """
-    world = _world_view(title, look_at, look_at + size * np.array([-0.95, -1.35, 0.6]))
+    eye, passive = surroundings.eye, surroundings.passive
+    world = _world_view(title, eye.middle, eye.position, followed=ENTITY, passive=passive)
     below = rrb.Tabs(*(rrb.TextDocumentView(origin=text, name=text) for text in texts))
-    tabs = [rrb.Vertical(*_plot_views(name), name=name) for name in vehicles]
-    if not tabs:
-        tabs = [rrb.Vertical(*_plot_views(), name=MOTION)]
-    if instruments:
-        views = [_instrument_view(title, paths) for title, paths in instruments.items()]
-        columns = 1 if len(views) <= MOST_IN_COLUMN else 2
-        tabs.append(rrb.Grid(*views, grid_columns=columns, name=INSTRUMENTS))
-    plots = rrb.Tabs(*tabs) if len(tabs) > 1 else tabs[0]
+    text = min((ROW * rows + HEADER) / WINDOW, MOST_TEXT)
+    names = LEGEND_ROW * legend.rows / WINDOW
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(world, below, row_shares=[4, 1]),
-            plots,
-            column_shares=[3, 2],
+            rrb.Vertical(world, legend.view(), below, row_shares=[1.0 - text - names, names, text]),
+            rrb.Tabs(*tabs),
+            column_shares=[1, 1],
         ),
         rrb.TimePanel(timeline=TIMELINE, play_state="playing", state="collapsed"),
         *_side_panels(),
@@ -59,7 +62,7 @@ def run_blueprint(
 
 
 def inspection_blueprint(
-    title: str, look_at: NDArray[np.float64], size: float, *, righting: bool
+    title: str, look_at: NDArray[np.float64], size: float, chart: RightingChart | None
 ) -> rrb.Blueprint:
     """Lay out an inspection: the vessel on the left, its report and righting arms on the right.
 
@@ -67,12 +70,12 @@ def inspection_blueprint(
         title: name of the view of the vessel.
         look_at: point at which it looks (3,) [m].
         size: length of the vessel [m].
-        righting: whether there are righting arms.
+        chart: the righting arms; None without.
     """
-    world = _world_view(title, look_at, look_at + size * np.array([-0.6, -1.3, 0.5]))
+    world = _world_view(title, look_at, look_at + size * AWAY)
     report = rrb.TextDocumentView(origin="report", name="report")
-    arms = rrb.TimeSeriesView(origin="righting", name="GZ [m] over heel [degrees]")
-    beside = rrb.Vertical(report, arms, row_shares=[3, 2]) if righting else rrb.Vertical(report)
+    shown = [report] if chart is None else [report, chart.view()]
+    beside = rrb.Vertical(*shown, row_shares=[3, 2][: len(shown)])
     return rrb.Blueprint(
         rrb.Horizontal(world, beside, column_shares=[3, 2]),
         rrb.TimePanel(state="hidden"),
@@ -81,47 +84,31 @@ def inspection_blueprint(
 
 
 def _world_view(
-    title: str, look_at: NDArray[np.float64], eye: NDArray[np.float64]
+    title: str,
+    look_at: NDArray[np.float64],
+    eye: NDArray[np.float64],
+    *,
+    followed: str | None = None,
+    passive: Sequence[str] = (),
 ) -> rrb.Spatial3DView:
-    """A view in 3D from `eye` towards `look_at`, (3,) [m]."""
+    """A view in 3D from `eye` towards `look_at`, (3,) [m].
+
+    Args:
+        title: its name.
+        look_at: a point in the middle of it.
+        eye: where it is seen from.
+        followed: the entity that it follows.
+        passive: entities that a pointer passes over.
+    """
     return rrb.Spatial3DView(
         origin="world",
         name=title,
-        background=rrb.Background(color=[24, 30, 40]),
+        background=rrb.Background(color=BACKGROUND),
         line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(position=eye, look_target=look_at, eye_up=[0, 0, 1]),
-    )
-
-
-def _plot_views(vehicle: str = "") -> list[rrb.TimeSeriesView]:
-    """The plots of a vehicle; '' is the only one."""
-    return [_plot_view(title, contents) for title, contents in list_plots(vehicle).items()]
-
-
-def _plot_view(title: str, contents: Sequence[str]) -> rrb.TimeSeriesView:
-    """A plot of the entities in `contents`; a leading '-' leaves an entity out."""
-    has_hulls = any(path.endswith("/volume/**") for path in contents)
-    return rrb.TimeSeriesView(
-        origin="plots",
-        contents=[path if path.startswith("-") else f"+ {path}" for path in contents],
-        name=title,
-        # a legend of all hulls would cover their lines
-        plot_legend=_legend(visible=not has_hulls),
-    )
-
-
-def _legend(*, visible: bool) -> rrb.PlotLegend:
-    """The legend of a plot, where lines are covered least."""
-    return rrb.PlotLegend(corner=rrb.Corner2D.RightTop, visible=visible)
-
-
-def _instrument_view(title: str, paths: Sequence[str]) -> rrb.TimeSeriesView:
-    """A plot of numbers of one kind and unit."""
-    return rrb.TimeSeriesView(
-        origin="instruments",
-        contents=[f"+ {path}" for path in paths],
-        name=title,
-        plot_legend=_legend(visible=len(paths) <= MOST_IN_LEGEND),
+        eye_controls=rrb.EyeControls3D(
+            position=eye, look_target=look_at, eye_up=[0, 0, 1], tracking_entity=followed
+        ),
+        overrides={entity: rrb.EntityBehavior(interactive=False) for entity in passive},
     )
 
 

@@ -9,7 +9,7 @@ from buoyancy_mj.scenes.fleet import Vehicle
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.viz.framing import arrow_scale
 from buoyancy_mj.viz.log import Log
-from buoyancy_mj.viz.plots import COLOURS, NEUTRAL
+from buoyancy_mj.viz.palette import COLOURS, NEUTRAL
 
 _CENTRES = {
     "gravity": ("weight", 0.02),

@@ -1,6 +1,5 @@
 """An `Inspection` as a Rerun recording: vessels at rest, righting arms and the report."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import manifold3d
@@ -16,9 +15,10 @@ from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.meshes.surface import to_manifold
 from buoyancy_mj.statics.curves import compute_waterline
 from buoyancy_mj.statics.hydrostatics import Hydrostatics
-from buoyancy_mj.statics.righting import RightingArm
 from buoyancy_mj.statics.vessel import Vessel
-from buoyancy_mj.viz.blueprints import inspection_blueprint
+from buoyancy_mj.viz.blueprints import RIGHT, inspection_blueprint
+from buoyancy_mj.viz.centre_labels import draw_centres
+from buoyancy_mj.viz.righting_chart import RightingChart
 from buoyancy_mj.viz.rrd import RrdFile
 from buoyancy_mj.viz.triangles import both_sides, rectangle, smooth_mesh
 
@@ -28,15 +28,6 @@ FLOODED = (170, 170, 170)
 WATERPLANE = (120, 200, 255, 110)
 WATERLINE = (255, 255, 255)
 SEA = (70, 150, 215, 30)
-POINTS: Mapping[str, tuple[int, int, int]] = {
-    "G": (230, 60, 60),
-    "B": (60, 90, 240),
-    "F": (255, 255, 255),
-    "Mt": (60, 190, 90),
-    "Ml": (150, 220, 60),
-}
-"""Colours of the centres of gravity, of buoyancy and of flotation, and of the transverse and
-longitudinal metacentre."""
 TRANSLUCENT = 110
 """Alpha of hulls."""
 FINENESS = 24.0
@@ -70,32 +61,35 @@ def _draw(stream: rr.RecordingStream, inspection: Inspection) -> None:
     floating = inspection.vessels
     look_at = floating[0].at_rest.position if floating else np.zeros(3)
     size = _size(floating[0].at_rest) if floating else 1.0
-    righting = any(one.righting is not None for one in floating)
-    stream.send_blueprint(inspection_blueprint(inspection.title, look_at, size, righting=righting))
+    arms = {one.total.body: one.righting for one in floating if one.righting is not None}
+    chart = RightingChart(arms) if arms else None
+    stream.send_blueprint(inspection_blueprint(inspection.title, look_at, size, chart))
 
     # the report and the vessels
     text = rr.TextDocument(report.to_markdown(inspection), media_type="text/markdown")
     stream.log("report", text, static=True)
     stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    if chart is not None:
+        chart.draw(stream)
     for one in floating:
         _draw_vessel(stream, rr.escape_entity_path_part(one.total.body), one)
 
 
 def _draw_vessel(stream: rr.RecordingStream, name: str, floating: VesselInspection) -> None:
-    """Draw one vessel, with its waterplane and centres if it rests, and its righting arms."""
+    """Draw one vessel, with its waterplane and centres if it rests."""
     vessel = floating.at_rest
     entity = f"world/{name}"
     _draw_hulls(stream, entity, vessel)
     _draw_sea(stream, entity, vessel)
     if floating.rest is None:
         buoyancy = vessel.position + vessel.rotation @ vessel.centroid
-        _draw_centres(stream, entity, {"G": vessel.position, "B": buoyancy}, _size(vessel))
+        centres = {"G": vessel.position, "B": buoyancy}
+        draw_centres(stream, entity, centres, _size(vessel), RIGHT, vessel.water.level)
         return
     hydrostatics = floating.rest.hydrostatics
     _draw_waterplane(stream, entity, vessel, hydrostatics.draft)
-    _draw_centres(stream, entity, _centres(hydrostatics, _size(vessel)), _size(vessel))
-    if floating.righting is not None:
-        _plot_righting_arm(stream, f"righting/{name}", floating.righting)
+    centres = _centres(hydrostatics, _size(vessel))
+    draw_centres(stream, entity, centres, _size(vessel), RIGHT, vessel.water.level)
 
 
 def _draw_hulls(stream: rr.RecordingStream, entity: str, vessel: Vessel) -> None:
@@ -154,33 +148,8 @@ def _draw_sheet(
     stream.log(entity, sheet, static=True)
 
 
-def _draw_centres(
-    stream: rr.RecordingStream, entity: str, points: Mapping[str, NDArray[np.float64]], size: float
-) -> None:
-    """Draw points by their names in `POINTS`, and a line from G to B."""
-    spheres = rr.Points3D(
-        [*points.values()],
-        colors=[POINTS[name] for name in points],
-        labels=[*points],
-        radii=0.012 * size,
-    )
-    stream.log(f"{entity}/centres", spheres, static=True)
-    line = rr.LineStrips3D([[points["G"], points["B"]]], colors=(200, 200, 200), radii=0.003 * size)
-    stream.log(f"{entity}/centres/BG", line, static=True)
-
-
-def _plot_righting_arm(stream: rr.RecordingStream, entity: str, arm: RightingArm) -> None:
-    """Plot the righting arm over the heel in whole degrees."""
-    heel = np.round(np.degrees(arm.heel)).astype(np.int64)
-    stream.send_columns(
-        entity,
-        indexes=[rr.TimeColumn("heel [degrees]", sequence=heel)],
-        columns=rr.Scalars.columns(scalars=arm.gz),
-    )
-
-
 def _centres(hydrostatics: Hydrostatics, size: float) -> dict[str, NDArray[np.float64]]:
-    """The points (3,) [m] of a vessel at rest, by their names in `POINTS`."""
+    """The points (3,) [m] of a vessel at rest, by their letters in `centre_labels.NAMES`."""
     points = {"G": hydrostatics.centre_of_gravity, "B": hydrostatics.centre_of_buoyancy}
     if hydrostatics.waterplane_area <= 0.0:
         return points

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import rerun as rr
 
 from buoyancy_mj.vehicle.instruments.instruments import ACTIVATION, CONTROL, FORCE, SENSOR, Channel
-from buoyancy_mj.viz.plots import hue
+from buoyancy_mj.viz.palette import hue
 
 TITLES = {
     SENSOR: "sensors",
@@ -26,8 +26,9 @@ def list_plots(channels: Iterable[Channel]) -> dict[str, list[str]]:
     """Entities that each plot shows, by its title: one for each kind and unit."""
     plots: dict[str, list[str]] = {}
     for channel in channels:
-        unit = f" [{channel.unit}]" if channel.unit else ""
-        plots.setdefault(TITLES[channel.kind] + unit, []).append(f"/{entity(channel)}")
+        # controls are in whatever unit their actuator takes
+        unit = channel.unit or ("-" if channel.kind == SENSOR else "own units")
+        plots.setdefault(f"{TITLES[channel.kind]} [{unit}]", []).append(entity(channel))
     return plots
 
 

@@ -43,8 +43,10 @@ class Log:
         self.time = 0.0
         """Simulated time [s] of what is drawn now."""
         self._streams = streams
-        self._rows: dict[tuple[str, Any], _Rows] = {}
+        self._rows: dict[tuple[Any, ...], _Rows] = {}
         self._lines: dict[tuple[str, ...], _Lines] = {}
+        self.extents: dict[str, tuple[float, float]] = {}
+        """Least and greatest finite value of each line that has been sent, by its entity."""
 
     def keep(self, entity: str, *data: Any) -> None:
         """Log what stays the same."""
@@ -63,12 +65,12 @@ class Log:
         Args:
             entity: the entity.
             archetype: what it is, as `rr.Points3D`.
-            parts: arrays (n, ...) of its components, as `positions`, copied; other rows of the same
-                entity have the same ones.
+            parts: arrays (n, ...) of its components, as `positions`, copied. Each set of components
+                has rows of its own, and may so have times of its own.
         """
-        rows = self._rows.get((entity, archetype))
+        rows = self._rows.get((entity, archetype, *parts))
         if rows is None:
-            rows = self._rows[entity, archetype] = _Rows([], {name: [] for name in parts})
+            rows = self._rows[entity, archetype, *parts] = _Rows([], {name: [] for name in parts})
         rows.times.append(self.time)
         for name, part in parts.items():
             rows.parts[name].append(np.array(part))
@@ -92,13 +94,21 @@ class Log:
                 columns[key] = rr.TimeColumn(TIMELINE, duration=key)
             return columns[key]
 
-        for (entity, archetype), rows in self._rows.items():
+        for (entity, archetype, *_), rows in self._rows.items():
             self._send(entity, index(rows.times), _join(archetype, rows))
         for entities, lines in self._lines.items():
             times = index(lines.times)
             for entity, values in zip(entities, np.transpose(lines.values), strict=True):
+                self._measure(entity, values)
                 self._send(entity, times, rr.Scalars.columns(scalars=values))
         self._rows, self._lines = {}, {}
+
+    def _measure(self, entity: str, values: NDArray[np.float64]) -> None:
+        """Widen the extent of a line by new values (n,)."""
+        finite = values[np.isfinite(values)]
+        if len(finite):
+            low, high = self.extents.get(entity, (np.inf, -np.inf))
+            self.extents[entity] = min(low, float(finite.min())), max(high, float(finite.max()))
 
     def _send(self, entity: str, times: rr.TimeColumn, columns: Iterable[Any]) -> None:
         """Send one entity to all streams."""

@@ -16,6 +16,7 @@ from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.run import find_run
 from buoyancy_mj.values import read_number
 from buoyancy_mj.viz.sinks import open_sinks
+from buoyancy_mj.viz.viewers import Viewers
 
 if TYPE_CHECKING:
     from buoyancy_mj.scenes.series import Series
@@ -43,12 +44,15 @@ class Recorder:
             due. None records each time.
         buoyancy: the water, where it is called by hand, or where several act.
         live: whether to stream to a Rerun viewer, which is started if none runs.
+        connect: address of a viewer that listens already, as 'HOST:PORT' or a URL of Rerun.
+        serve: port of this machine at which to serve a page for a browser, until the process
+            ends; the next port is taken too.
 
     Raises:
         ModelError: no water acts on the model, several do and none is named, or the data are of
             another model.
         RecordingError: a file of another kind, one that cannot be written, nothing to record to, or
-            no viewer could be started.
+            no viewer could be reached or started.
 
     Example:
         >>> with Recorder(model, data, "run.rrd", rate=60.0) as recorder:
@@ -67,24 +71,31 @@ class Recorder:
         rate: float | None = None,
         buoyancy: Buoyancy | None = None,
         live: bool = False,
+        connect: str | None = None,
+        serve: int | None = None,
     ) -> None:
         self.paths: tuple[Path, ...] = ()
         """Where the files are, once they are closed."""
+        self.page: str | None = None
+        """Address of the page that is served; None for none."""
         self._rate = None if rate is None else read_number(RecordingError, "rate", rate, above=0.0)
         self._begin: float | None = None
         self._last = -math.inf
         self._recorded = 0
         self._closed = False
-        _check_places(path, series, live=live)
+        viewers = Viewers(live=live, connect=connect, serve=serve)
+        _check_places(path, series, viewers)
         self._run = find_run(model, data, buoyancy)
         self._source = FrameSource(model, self._run.buoyancy, self._run.vehicles)
         self._sinks = open_sinks(
             self._run,
             None if path is None else Path(path),
             None if series is None else Path(series),
-            live=live,
+            viewers=viewers,
             has_summary=False,
         )
+        if self._sinks.recording is not None:
+            self.page = self._sinks.recording.page
 
     def __enter__(self) -> "Recorder":
         return self
@@ -178,9 +189,9 @@ class Recorder:
             self.paths += (path,) if path is not None else ()
 
 
-def _check_places(path: str | Path | None, series: str | Path | None, *, live: bool) -> None:
+def _check_places(path: str | Path | None, series: str | Path | None, viewers: Viewers) -> None:
     """Refuse a recording of another kind of file, and one that goes nowhere."""
-    if path is None and series is None and not live:
+    if path is None and series is None and not viewers:
         raise RecordingError(
             "there is nothing to record to; give a file ('run.rrd'), series='run.csv' or live=True"
         )

@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np
 import rerun as rr
 
 from buoyancy_mj.errors import BuoyancyWarning
@@ -15,24 +14,28 @@ from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.run import Run, place_at_start
 from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.vehicle.instruments.instruments import Instruments
-from buoyancy_mj.viz import instruments, plots
+from buoyancy_mj.viz import instruments, plots, tabs
 from buoyancy_mj.viz.blueprints import run_blueprint
 from buoyancy_mj.viz.bodies import BodyDrawing
 from buoyancy_mj.viz.contacts import ContactDrawing
 from buoyancy_mj.viz.forces import ForceDrawing
-from buoyancy_mj.viz.framing import find_middle, measure_extent
-from buoyancy_mj.viz.live_viewer import open_viewer
+from buoyancy_mj.viz.legend import Legend
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.plot_views import Times, lay_out_spectra, lay_out_tabs
 from buoyancy_mj.viz.rrd import RrdFile
+from buoyancy_mj.viz.spectra import Spectra
+from buoyancy_mj.viz.surroundings import Surroundings
 from buoyancy_mj.viz.tendons import TendonDrawing
+from buoyancy_mj.viz.texts import write_summary
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
-from buoyancy_mj.viz.water_surface import SurfaceDrawing
+from buoyancy_mj.viz.viewers import NOBODY, Viewers
+from buoyancy_mj.viz.watch import Watch
 
 FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
 """Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
 more of its work."""
-CLOSER = 0.6
-"""Distance of the eye from several vehicles over that from one as long as all of them."""
+EXPECTED_ROWS = 12
+"""Rows of a summary that there is not yet."""
 
 
 class Recording:
@@ -46,11 +49,11 @@ class Recording:
     Args:
         run: the run: a `Simulation`, or a loop of somebody's own.
         path: the file; None for none.
-        live: whether to stream to a Rerun viewer, which is started if none runs.
+        viewers: where the run is watched while it goes on.
         has_summary: whether `close` will be given a summary.
 
     Raises:
-        RecordingError: the file cannot be written, or no viewer could be started.
+        RecordingError: the file cannot be written, or no viewer could be reached or started.
     """
 
     def __init__(
@@ -58,7 +61,7 @@ class Recording:
         run: Run,
         path: Path | None = None,
         *,
-        live: bool = False,
+        viewers: Viewers = NOBODY,
         has_summary: bool = True,
     ) -> None:
         self.run = run
@@ -66,16 +69,15 @@ class Recording:
         self._texts = ("summary", "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
-        self._every = LIVE_EVERY if live else FLUSH_EVERY
+        self._every = LIVE_EVERY if viewers else FLUSH_EVERY
         self._streams: list[rr.RecordingStream] = []
         self._file: RrdFile | None = None
         if path is not None:
             self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
             self._file = RrdFile(path, self._streams[-1])
         try:
-            if live:
-                self._streams.append(rr.RecordingStream("buoyancy_mj", recording_id=identity))
-                open_viewer(self._streams[-1])
+            self._watch = Watch(viewers, identity)
+            self._streams += self._watch.streams
             self._begin()
         except BaseException:
             # nothing of a recording that never began
@@ -90,19 +92,22 @@ class Recording:
         vehicles = run.vehicles.values()
         self._several = list(run.vehicles) if len(vehicles) > 1 else []
         self._start = place_at_start(run)
-        self._size = measure_extent(vehicles, self._start)
         length = max(vehicle.length for vehicle in vehicles)
+        self._surroundings = Surroundings(run, self._start)
+        self._legend = Legend(run, self._surroundings.cell)
         self._bodies = BodyDrawing(run, length)
-        self._surface = SurfaceDrawing(run.buoyancy.water, self._size)
         self._thrusters = ThrusterDrawing(run, length)
         self._tendons = TendonDrawing(run.model)
         self._contacts = ContactDrawing(run, length)
         self._instruments = Instruments(run.model)
         self._entities = tuple(map(instruments.entity, self._instruments.channels))
+        self._spectra = Spectra(self._vehicles())
         self._forces = [
             ForceDrawing(vehicle, name, run.buoyancy.causes) for vehicle, name in self._vehicles()
         ]
+        self._vehicle_lines = [plots.VehicleLines(*one) for one in self._vehicles()]
         self._lines: tuple[str, ...] | None = None
+        self._times: Times | None = None
         self._draw_static()
         self._sent = time.monotonic()
 
@@ -115,6 +120,11 @@ class Recording:
                 pass
 
     @property
+    def page(self) -> str | None:
+        """Address of the page that is served; None for none."""
+        return self._watch.page
+
+    @property
     def closed(self) -> bool:
         """Whether the file has its name already."""
         return self._file is not None and self._file.closed
@@ -125,26 +135,29 @@ class Recording:
         Raises:
             RecordingError: the disk is full or the file was taken away; what was written stays.
         """
-        # the picture
+        begin = frame.time if self._times is None else self._times[0]
+        self._times = (begin, frame.time)
         self._log.time = frame.time
+
+        # the picture
         self._bodies.draw(self._log, frame)
-        middle = find_middle(one.centre_of_mass for one in frame.vehicles.values())
-        self._surface.draw(self._log, middle, frame.time)
+        self._surroundings.draw(self._log, frame)
         for forces in self._forces:
             forces.draw(self._log, frame)
         for drawing in (self._thrusters, self._tendons, self._contacts):
             drawing.draw(self._log, frame)
 
         # the plots, whose lines are the same in all frames
-        values = [plots.values(vehicle, frame) for vehicle, _ in self._vehicles()]
+        values = [lines.measure(frame) for lines in self._vehicle_lines]
         if self._lines is None:
             self._lines = tuple(
-                plots.entity(line, name)
-                for (_, name), lines in zip(self._vehicles(), values, strict=True)
-                for line in lines
+                plots.entity(line, lines.name)
+                for lines, measured in zip(self._vehicle_lines, values, strict=True)
+                for line in measured
             )
-        self._log.plot(self._lines, [value for lines in values for value in lines.values()])
+        self._log.plot(self._lines, [value for measured in values for value in measured.values()])
         self._log.plot(self._entities, self._instruments.read(frame.data))
+        self._spectra.add(frame)
         if time.monotonic() - self._sent >= self._every:
             self._log.send()
             self._write()
@@ -164,9 +177,14 @@ class Recording:
         Raises:
             RecordingError: the last data could not be written.
         """
+        rows = EXPECTED_ROWS
         if summary is not None:
-            self._log_text("summary", _summary_text(summary))
+            text, rows = write_summary(summary)
+            self._log_text("summary", text)
         self._log.send()
+        if self._spectra.known:
+            self._spectra.draw(self._log)
+        self._lay_out(rows, self._times)
         try:
             for stream in self._streams:
                 stream.flush(timeout_sec=60.0)
@@ -180,31 +198,15 @@ class Recording:
     def _draw_static(self) -> None:
         """Draw what stays the same in all frames."""
         run, channels = self.run, self._instruments.channels
-        vehicles = run.vehicles.values()
-        middle = find_middle(self._start.xpos[vehicle.root] for vehicle in vehicles)
-        # at the surface over the vehicles, or under it where they are deep
-        reach = 0.5 * self._size
-        height = np.clip(run.buoyancy.water.level, middle[2] - reach, middle[2] + reach)
-        look_at = np.array([*middle[:2], height])
-        # vehicles apart from each other fill less of the picture than one
-        size = CLOSER * self._size if self._several else self._size
-        layout = run_blueprint(
-            run.title,
-            look_at,
-            size,
-            texts=self._texts,
-            vehicles=self._several,
-            instruments=instruments.list_plots(channels),
-        )
-        for stream in self._streams:
-            stream.send_blueprint(layout)
+        self._lay_out()
         self._log.keep("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         self._log_text("scene", f"```toml\n{run.text}\n```")
+        self._surroundings.draw_static(self._log)
         self._bodies.draw_static(self._log)
-        self._surface.draw_static(self._log)
         for forces in self._forces:
             forces.draw_static(self._log)
         self._thrusters.draw_static(self._log)
+        self._legend.draw_static(self._log)
 
         # the style of each line
         causes = run.buoyancy.causes
@@ -215,6 +217,36 @@ class Recording:
         for entity, style in instruments.styles(channels).items():
             self._log.keep(entity, style)
         self._write()
+
+    def _lay_out(self, rows: int = EXPECTED_ROWS, times: Times | None = None) -> None:
+        """Lay out the viewer, for what is known of the lines by now.
+
+        Args:
+            rows: number of rows of the summary.
+            times: what the run spans; None where that is not known.
+        """
+        run, extents = self.run, self._log.extents
+        vehicles_own = {
+            name: tabs.list_vehicle_tabs(vehicle, name, run.buoyancy.causes, extents)
+            for vehicle, name in self._vehicles()
+        }
+        shared = tabs.list_instrument_tabs(self._instruments.channels)
+        laid = lay_out_tabs(vehicles_own, shared, extents, times)
+        if self._spectra.known:
+            laid.append(lay_out_spectra(self._spectra.entities))
+        layout = run_blueprint(
+            run.title,
+            self._surroundings,
+            self._legend,
+            texts=self._texts,
+            rows=rows,
+            tabs=laid,
+        )
+        self._write()
+        for stream in self._streams:
+            stream.send_blueprint(layout)
+        if self._file is not None:
+            self._file.write_layout()
 
     def _vehicles(self) -> Iterator[tuple[Vehicle, str]]:
         """Each vehicle, and what tells it from others: '' for the only one."""
@@ -229,11 +261,3 @@ class Recording:
         """Write what has been logged to the file."""
         if self._file is not None:
             self._file.write()
-
-
-def _summary_text(summary: Summary) -> str:
-    """The summary as a Markdown table."""
-    names = list(summary.vehicles) if len(summary.vehicles) > 1 else [""]
-    lines = [(summary.scene, *names), ("---",) * (1 + len(names)), *summary.rows()]
-    table = "".join(f"| {' | '.join(line)} |\n" for line in lines)
-    return f"{table}\n{summary.caption}\n" if len(names) > 1 else table

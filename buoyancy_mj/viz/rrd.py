@@ -5,6 +5,9 @@ Rerun's format each read of a stream is a header of 12 bytes, then messages, the
 is its kind and its length (two little-endian 64-bit integers) and that many bytes; the end is a
 message of kind 0 and a footer. One file is one header and all the messages; `rerun rrd optimize`
 adds the footer and packs the frames together.
+
+A run has a layout from its start on, and at its end a better one, which then takes the place of the
+first: the viewer shows the first that it reads.
 """
 
 import contextlib
@@ -14,7 +17,7 @@ import struct
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import rerun as rr
@@ -25,6 +28,8 @@ from buoyancy_mj.scenes.recording_file import RecordingFile
 _HEADER_SIZE = 12
 _MESSAGE = struct.Struct("<QQ")
 """Kind and length of a message."""
+_BLOCK = 1 << 20
+"""Bytes that are copied at once."""
 _END = 0
 """Kind of the message that ends a read."""
 
@@ -46,6 +51,7 @@ class RrdFile:
     def __init__(self, path: Path, stream: rr.RecordingStream) -> None:
         self._file = RecordingFile(path, "(--record)")
         self._stream = stream.binary_stream()
+        self._layouts: list[slice] = []
 
     @property
     def closed(self) -> bool:
@@ -68,6 +74,16 @@ class RrdFile:
                 f"the recording broke off: {error.strerror}; what was written is in '{path}'"
             ) from error
 
+    def write_layout(self) -> None:
+        """Append a layout, which is all that has been logged since `write` was called.
+
+        Raises:
+            RecordingError: as for `write`.
+        """
+        start = self._file.size
+        self.write()
+        self._layouts.append(slice(start, self._file.size))
+
     def close(self, *, complete: bool) -> Path:
         """Add the footer, and give the file its name.
 
@@ -84,7 +100,7 @@ class RrdFile:
         """
         self._file.close()
         try:
-            _add_footer(self._file.partial)
+            _add_footer(self._file.partial, self._layouts)
         finally:
             # also when a second Ctrl-C finds that a footer takes too long
             left = self._file.take_name(complete=complete)
@@ -112,19 +128,38 @@ def _split(chunk: bytes, *, with_header: bool) -> Iterator[memoryview]:
         start = end
 
 
-def _add_footer(path: Path) -> None:
-    """Add the footer; a file for which there is no space stays without, and still opens."""
+def _add_footer(path: Path, layouts: Sequence[slice]) -> None:
+    """Add the footer, and leave the last layout alone.
+
+    A file for which there is no space stays without, and still opens.
+    """
     path = path.absolute()
     with (
         contextlib.suppress(OSError, subprocess.CalledProcessError),
         tempfile.TemporaryDirectory(prefix=".", dir=path.parent) as folder,
     ):
-        whole = Path(folder, "whole.rrd")
+        ordered, whole = Path(folder, "ordered.rrd"), Path(folder, "whole.rrd")
+        _keep_last_layout(path, layouts, ordered)
         # in an empty folder: Python imports nothing from where the user works; the command alone,
         # without the whole of rerun, which takes half a second to import
         subprocess.run(
-            [sys.executable, "-P", "-m", "rerun_cli", "rrd", "optimize", path, "-o", whole],
+            [sys.executable, "-P", "-m", "rerun_cli", "rrd", "optimize", ordered, "-o", whole],
             cwd=folder, capture_output=True, check=True, stdin=subprocess.DEVNULL,
         )  # fmt: skip
         shutil.copymode(path, whole)
         os.replace(whole, path)
+
+
+def _keep_last_layout(path: Path, layouts: Sequence[slice], out: Path) -> None:
+    """Copy a file with the last of its layouts in the place of the first, without the others."""
+    size = path.stat().st_size
+    kept = [slice(0, size)]
+    if layouts:
+        begins, ends = [one.stop for one in layouts], [one.start for one in layouts[1:]]
+        kept = [slice(0, layouts[0].start), layouts[-1], *map(slice, begins, [*ends, size])]
+    with path.open("rb") as source, out.open("wb") as target:
+        for part in kept:
+            source.seek(part.start)
+            left = part.stop - part.start
+            while left > 0:
+                left -= target.write(source.read(min(left, _BLOCK)))

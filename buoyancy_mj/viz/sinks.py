@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from buoyancy_mj.scenes.run import Run
 from buoyancy_mj.scenes.series import Series
+from buoyancy_mj.viz.viewers import NOBODY, Viewers
 
 if TYPE_CHECKING:
     from buoyancy_mj.viz.recording import Recording
@@ -20,7 +21,12 @@ class Sinks(NamedTuple):
 
 
 def open_sinks(
-    run: Run, path: Path | None, series: Path | None, *, live: bool, has_summary: bool = True
+    run: Run,
+    path: Path | None,
+    series: Path | None,
+    *,
+    viewers: Viewers = NOBODY,
+    has_summary: bool = True,
 ) -> Sinks:
     """Open a recording and a table; where one cannot be opened, nothing of the other stays.
 
@@ -28,19 +34,19 @@ def open_sinks(
         run: the run.
         path: file of the recording; None for none.
         series: file of the table; None for none.
-        live: whether to stream to a Rerun viewer.
+        viewers: where the run is watched while it goes on.
         has_summary: whether the recording will be given a summary.
 
     Raises:
         RecordingError: a file cannot be written, or no viewer could be started.
     """
     table = Series(run, series) if series is not None else None
-    if path is None and not live:
+    if path is None and not viewers:
         return Sinks(None, table)
     try:
         from buoyancy_mj.viz.recording import Recording  # needs Rerun, which takes time to import
 
-        return Sinks(Recording(run, path, live=live, has_summary=has_summary), table)
+        return Sinks(Recording(run, path, viewers=viewers, has_summary=has_summary), table)
     except BaseException:
         if table is not None:
             table.discard()

@@ -18,6 +18,13 @@ LONGER = 4.0
 """Length of an arrow over that of a load of the same force: thrusters are weak."""
 
 
+def find_thrusters(model: mujoco.MjModel) -> NDArray[np.int64]:
+    """Indices (n,) of the actuators that push at a site."""
+    at_site = np.array(find_pushing(model), np.int64)
+    pushing: NDArray[np.int64] = at_site[model.actuator_gear[at_site, :3].any(axis=1)]
+    return pushing
+
+
 class ThrusterDrawing:
     """The actuators of a run that push at a site: motors, and thrusters of this package.
 
@@ -28,12 +35,12 @@ class ThrusterDrawing:
 
     def __init__(self, run: Run, size: float) -> None:
         model = run.model
-        at_site = np.array(find_pushing(model), int)
-        self._actuators = at_site[model.actuator_gear[at_site, :3].any(axis=1)]
+        self._actuators = find_thrusters(model)
         self._gear = model.actuator_gear[self._actuators, :3]
         self._names = [actuator_name(model, actuator) for actuator in self._actuators.tolist()]
         self._forces = model.actuator_outadr[self._actuators]
         self._size = size
+        self._is_idle = False
 
         # a reference site gives the axes, where there is one
         self._sites, references = model.actuator_trnid[self._actuators].T
@@ -52,7 +59,12 @@ class ThrusterDrawing:
 
     def draw(self, log: Log, frame: Frame) -> None:
         """Draw an arrow for each force; a quarter of the vehicle's weight is half its length."""
-        if len(self._actuators):
+        if not len(self._actuators):
+            return
+        # what does not push is drawn once
+        is_idle = not frame.data.actuator_force[self._forces].any()
+        if not (is_idle and self._is_idle):
+            self._is_idle = is_idle
             vectors = self._scales[:, None] * self.find_forces(frame.data)
             origins = frame.data.site_xpos[self._sites]
             log.draw(ENTITY, rr.Arrows3D, origins=origins, vectors=vectors)
@@ -61,5 +73,5 @@ class ThrusterDrawing:
         """The forces (n, 3) [N], world frame: actuator_force times gear, along the site's axes."""
         world_from_site = data.site_xmat[self._axes].reshape(-1, 3, 3)
         along = self._gear * data.actuator_force[self._forces][:, None]
-        forces: NDArray[np.float64] = np.einsum("nij,nj->ni", world_from_site, along)
+        forces: NDArray[np.float64] = (world_from_site @ along[:, :, None])[:, :, 0]
         return forces

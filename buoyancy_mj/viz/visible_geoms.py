@@ -9,15 +9,12 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.hulls.bodies import find_mocap_bodies, find_moving_bodies
 from buoyancy_mj.hulls.geoms import read_geom_mesh
-from buoyancy_mj.meshes.refinement import refine
 from buoyancy_mj.viz.triangles import SmoothMesh, rectangle, smooth_mesh
 
 SHOWN_GROUPS = 3
 """Number of geom groups that MuJoCo's viewer shows at first: 0, 1, 2."""
 DEFAULT_RGBA = np.array([0.5, 0.5, 0.5, 1.0], np.float32)
 """Colour of a geom whose file sets none; only then the colour of its material shows."""
-FINENESS = 12.0
-"""Length of a moving geom over its longest edge, so that its vertices show what of it is wet."""
 ENDLESS = 20.0
 """Half length at which an endless plane is cut off [m]."""
 
@@ -59,7 +56,7 @@ def find_visible_geoms(model: mujoco.MjModel) -> Iterator[VisibleGeom]:
         body = int(model.geom_bodyid[geom])
         moves = bool(can_move[body])
         rgba = choose_colour(model, model.geom_rgba[geom], model.geom_matid[geom])
-        mesh = _mesh(model, geom, fine=moves)
+        mesh = _mesh(model, geom)
         if mesh is None or rgba[3] == 0.0:
             continue
 
@@ -93,15 +90,12 @@ def choose_colour(
     return rgba
 
 
-def _mesh(model: mujoco.MjModel, geom: int, *, fine: bool) -> SmoothMesh | None:
-    """The triangles of a geom in its frame, refined where asked; None if it has none."""
+def _mesh(model: mujoco.MjModel, geom: int) -> SmoothMesh | None:
+    """The triangles of a geom in its frame; None if it has none."""
     is_plane = model.geom_type[geom] == mujoco.mjtGeom.mjGEOM_PLANE
     half = [side if side > 0.0 else ENDLESS for side in model.geom_size[geom, :2]]
     arrays = rectangle(half) if is_plane else read_geom_mesh(model, geom)
     if arrays is None:
         return None
     vertices, faces = arrays
-    if fine:
-        longest = float(np.ptp(vertices, axis=0).max())
-        vertices, faces = refine(vertices, faces, longest / FINENESS)
     return smooth_mesh(vertices, faces)

@@ -13,16 +13,17 @@ from benchmarks.rows import describe_time
 
 def draw_speed(path: Path, results: dict[str, Any]) -> None:
     """Draw what was measured of both; nothing where neither was."""
-    from matplotlib.figure import Figure
+    from buoyancy_mj.plotting.style import new_figure, save_figure, use_style
 
     draws = {"submersion": _draw_submersion, "profile": _draw_profile}
     names = [name for name in draws if name in results]
     if not names:
         return
-    figure = Figure(figsize=(6.5 * len(names), 4.5), layout="constrained")
-    for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
-        draws[name](axes, results[name])
-    figure.savefig(path, dpi=110)
+    with use_style():
+        figure = new_figure(6.5 * len(names), 4.8)
+        for axes, name in zip(figure.subplots(1, len(names), squeeze=False)[0], names, strict=True):
+            draws[name](axes, results[name])
+        save_figure(figure, path)
 
 
 def _draw_submersion(axes: Any, results: submersion.Results) -> None:
@@ -41,8 +42,7 @@ def _draw_submersion(axes: Any, results: submersion.Results) -> None:
         ylabel="time of one submersion [us]",
         title="a sphere in random attitudes",
     )
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize=8, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    axes.legend(ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.14))
 
 
 def _draw_profile(axes: Any, results: profile.Results) -> None:
@@ -62,6 +62,6 @@ def _draw_profile(axes: Any, results: profile.Results) -> None:
         f"{textwrap.fill(scene, 28)}\n{describe_time(results[scene][profile.STEP])}"
         for scene in scenes
     ]
-    axes.set_yticks(range(len(scenes)), labels, fontsize=8)
+    axes.set_yticks(range(len(scenes)), labels)
     axes.set(xlabel="part of a step [%]", title="where a step goes")
-    axes.legend(fontsize=8, ncols=4, loc="upper center", bbox_to_anchor=(0.4, -0.14))
+    axes.legend(ncols=4, loc="upper center", bbox_to_anchor=(0.4, -0.14))

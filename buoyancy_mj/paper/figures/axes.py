@@ -1,4 +1,4 @@
-"""What the figures share: colours of the methods, grids of axes, legends."""
+"""What the figures share: colours of the methods, axes, legends."""
 
 from typing import Any
 
@@ -8,15 +8,16 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from buoyancy_mj.paper.study import Table
+from buoyancy_mj.plotting.style import BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 
 COLOURS = {
     "closed form": "black",
-    "exact": "tab:blue",
-    "convex hull": "tab:red",
-    "convex hull with cuts": "tab:orange",
-    "sections": "tab:green",
-    "sections, Simpson": "tab:olive",
-    "sections, axis of the body": "tab:purple",
+    "exact": BLUE,
+    "convex hull": VERMILLION,
+    "convex hull with cuts": ORANGE,
+    "sections": GREEN,
+    "sections, Simpson": SKY,
+    "sections, axis of the body": PURPLE,
 }
 """Colours of the methods, the same in all figures."""
 REFERENCE: dict[str, Any] = {"color": COLOURS["closed form"], "lw": 4, "alpha": 0.3}
@@ -32,15 +33,12 @@ def new_figure(
 
 
 def finish(*all_axes: Axes) -> None:
-    """Draw grids everywhere, and a legend on the first axes, and on the last if theirs differs."""
-    for axes in all_axes:
-        axes.grid(alpha=0.3)
-
+    """Draw a legend on the first axes, and on the last if theirs differs."""
     first = all_axes[0]
     last = all_axes[-1]
-    first.legend(fontsize=8, framealpha=0.6)
+    first.legend()
     if last.get_legend_handles_labels()[1] != first.get_legend_handles_labels()[1]:
-        last.legend(fontsize=8, framealpha=0.6)
+        last.legend()
 
 
 def numbers(table: Table, name: str) -> NDArray[np.float64]:

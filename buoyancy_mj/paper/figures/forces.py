@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from buoyancy_mj.paper import solids
 from buoyancy_mj.paper.figures.axes import COLOURS, REFERENCE, finish, new_figure, numbers
 from buoyancy_mj.paper.study import Result
+from buoyancy_mj.plotting.style import SKY, VERMILLION
 
 _OBLIQUE = np.array([[1.0, 0.0], [0.45, 0.3], [0.0, 1.0]])
 """Projection (3, 2) in which y runs to the upper right, away from the eye."""
@@ -58,7 +59,7 @@ def draw_distributed(result: Result) -> Figure:
         axes.add_collection(
             PolyCollection(triangles, facecolors="0.7", edgecolors="none", alpha=0.1)
         )
-    axes.add_collection(PolyCollection([_SEA @ _OBLIQUE], facecolors="tab:cyan", alpha=0.15))
+    axes.add_collection(PolyCollection([_SEA @ _OBLIQUE], facecolors=SKY, alpha=0.15))
 
     # the forces, the last of them that of all meshes
     scale = 0.25 / forces.max()
@@ -66,7 +67,7 @@ def draw_distributed(result: Result) -> Figure:
     for name, point, force in meshes:
         _draw_force(axes, point, force, scale, name, COLOURS["exact"], 1.5, 1.0)
     _, point, force = everything
-    _draw_force(axes, point, force, scale, "all", "tab:red", 4.0, 0.5)
+    _draw_force(axes, point, force, scale, "all", VERMILLION, 4.0, 0.5)
 
     axes.set(
         xlim=(-0.55, 0.6),
@@ -76,10 +77,8 @@ def draw_distributed(result: Result) -> Figure:
         ylabel="z + 0.3 y [m]",
     )
     axes.set_title(
-        "buoyancy of the AUV's 15 meshes, and their resultant at the volume-weighted centroid",
-        fontsize=10,
+        "buoyancy of the AUV's 15 meshes, and their resultant at the volume-weighted centroid"
     )
-    axes.grid(alpha=0.3)
     return figure
 
 

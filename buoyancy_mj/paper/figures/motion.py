@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.paper.figures.axes import COLOURS, finish, new_figure, numbers
 from buoyancy_mj.paper.study import Result
+from buoyancy_mj.plotting.style import SKY
 
 
 def draw_cog(result: Result) -> Figure:
@@ -27,7 +28,7 @@ def draw_cog(result: Result) -> Figure:
             axes.plot(time, heights, color=COLOURS[method], lw=1.3, label=method)
         if surface != "still":
             level = 0.3 * np.sin(np.pi * time)
-            axes.plot(time, level, color="tab:cyan", lw=1, ls=":", label="surface at the origin")
+            axes.plot(time, level, color=SKY, lw=1, ls=":", label="surface at the origin")
         axes.set(title=f"{vehicle}, {surface}", xlabel="time [s]", ylabel="CoG z [m]")
     finish(*all_axes)
     return figure

@@ -1,0 +1,171 @@
+"""`Eye`: where one looks from in a recording: over the water or in it, along with the vehicles."""
+
+import math
+
+import mujoco
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from buoyancy_mj.drawing.sight import clear_sight
+from buoyancy_mj.drawing.subject import Subject
+from buoyancy_mj.scenes.run import Run
+from buoyancy_mj.sea.water import Water
+from buoyancy_mj.viz.log import Log
+
+ENTITY = "world/eye"
+"""The entity that the view follows: a point amid the vehicle, or the eye itself."""
+FOVY = math.radians(55.0)
+"""Angle that the viewer's eye takes from top to bottom [rad]."""
+ASPECT = 1.4
+"""Width of the view over its height, about."""
+ROOM = 0.5, 0.85
+"""Part of the picture that vehicles fill, from top to bottom and across."""
+PITCH = math.radians(14.0), math.radians(10.0)
+"""Angle by which the eye stands higher than what it looks at [rad]: over water, and in it."""
+BEARINGS = np.radians([-70.0, 70.0, -110.0, 110.0, -20.0, 160.0])
+"""Where it may stand, from where the vehicle points [rad]; the first with a clear sight is taken.
+From the side, since vehicles go ahead: a wall that they come to stays out of the way."""
+LAG = np.array([0.4, 0.4, 3.0])
+"""Times by which the eye follows late [s], along x, y and z: heave shows against the horizon."""
+SLACK = 0.4
+"""Most that it lags behind, over the reach of the vehicles."""
+
+
+class Eye:
+    """The eye of a recording's view of the world.
+
+    One vehicle is tracked: who drags in the viewer turns about it while it goes on. Several are
+    seen by a camera that draws back as they part, so that all stay in the picture.
+
+    Args:
+        run: the run.
+        start: its data with the poses at the start.
+    """
+
+    def __init__(self, run: Run, start: mujoco.MjData) -> None:
+        water = run.buoyancy.water
+        subject = Subject(run.model, run.vehicles.values(), start)
+        along, up = subject.measure(start)
+        self.several = subject.count > 1
+        """Whether there are several vehicles."""
+        self.middle = subject.locate(start)
+        """What it looks at (3,) [m]."""
+        self.reach = max(along, up)
+        """How far the vehicles reach from there at the start [m]."""
+        self.distance = find_distance(along, up)
+        """How far it is from there [m]."""
+        self.level = water.level
+        """Height of the still surface [m]."""
+        self.crest = measure_crest(water)
+        """How high crests are, but for rare ones [m]."""
+
+        # the side, whence nothing hides the vehicles
+        rise = self._find_rise(up)
+        flat = math.sqrt(max(self.distance**2 - rise**2, 0.0))
+        headings = subject.heading + BEARINGS
+        offsets = np.column_stack(
+            [flat * np.cos(headings), flat * np.sin(headings), np.full(len(headings), rise)]
+        )
+        seen = np.array(
+            [clear_sight(run.model, start, self.middle, self.middle + one) for one in offsets]
+        )
+        free = np.linalg.norm(seen - self.middle, axis=1)
+        best = int(np.argmax(np.round(free / self.distance, 3)))
+        self._away = offsets[best] / np.linalg.norm(offsets[best])
+        if not self.several:
+            self.distance = float(free[best])
+        self._turn = _look_along(-self._away)
+        self._time: float | None = None
+        self._slack = SLACK * min(along, up)
+        self._alone = 0.5 * max(vehicle.length for vehicle in run.vehicles.values())
+
+    @property
+    def offset(self) -> NDArray[np.float64]:
+        """From what it looks at to the eye (3,) [m]."""
+        offset: NDArray[np.float64] = self.distance * self._away
+        return offset
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Where it is (3,) [m]."""
+        return self.middle + self.offset
+
+    @property
+    def is_below(self) -> bool:
+        """Whether it is under water, as still water stands."""
+        return bool(self.position[2] < self.level)
+
+    def draw_static(self, log: Log) -> None:
+        """Draw what is tracked, which nobody sees."""
+        if not self.several:
+            log.keep(ENTITY, rr.Points3D([[0.0, 0.0, 0.0]], radii=[0.0]))
+            return
+        camera = rr.Pinhole(
+            fov_y=FOVY, aspect_ratio=ASPECT, image_plane_distance=1e-3 * self.distance
+        )
+        log.keep(ENTITY, camera)
+
+    def draw(self, log: Log, centres: NDArray[np.float64], time: float) -> None:
+        """Follow the vehicles.
+
+        Args:
+            log: where to.
+            centres: their centres of mass (n, 3) [m].
+            time: [s].
+        """
+        low, high = centres.min(axis=0), centres.max(axis=0)
+        self._follow(0.5 * (low + high), time)
+        if not self.several:
+            log.draw(ENTITY, rr.Transform3D, translation=self.middle[None])
+            return
+        # as far as it takes, and no nearer again
+        half = 0.5 * (high - low)
+        along = math.hypot(half[0], half[1]) + self._alone
+        self.distance = max(self.distance, find_distance(along, half[2] + self._alone))
+        log.draw(
+            ENTITY, rr.Transform3D, translation=self.position[None], quaternion=self._turn[None]
+        )
+
+    def _follow(self, middle: NDArray[np.float64], time: float) -> None:
+        """Go after what it looks at, late, but never so late that it leaves the picture."""
+        if self._time is not None:
+            behind = (self.middle - middle) * np.exp((self._time - time) / LAG)
+            far = math.sqrt(behind @ behind)
+            middle = middle + behind * min(1.0, self._slack / max(far, 1e-9))
+        self.middle, self._time = middle, time
+
+    def _find_rise(self, up: float) -> float:
+        """How much higher than what it looks at the eye stands [m], clear of the surface."""
+        depth, clear = self.level - float(self.middle[2]), 1.2 * self.crest + 0.2 * up
+        if depth > 1.2 * up + self.crest:
+            return min(self.distance * math.sin(PITCH[1]), depth - clear)
+        rise = max(self.distance * math.sin(PITCH[0]), depth + clear)
+        return min(rise, 0.8 * self.distance)
+
+
+def find_distance(along: float, up: float) -> float:
+    """Distance [m] at which vehicles fill their room in the picture.
+
+    Args:
+        along: how far they reach along the ground from where one looks [m].
+        up: how far they reach up and down [m].
+    """
+    half = math.tan(0.5 * FOVY)
+    return max(along / (ROOM[1] * ASPECT * half) + 0.25 * along, up / (ROOM[0] * half))
+
+
+def _look_along(forward: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The quaternion (4,), the scalar last, of a level camera that looks along a unit vector."""
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    turn = np.column_stack([right, np.cross(forward, right), forward])
+    scalar_first = np.empty(4)
+    mujoco.mju_mat2Quat(scalar_first, turn.ravel())
+    return np.roll(scalar_first, -1)
+
+
+def measure_crest(water: Water) -> float:
+    """Height of crests [m]: of all waves at once, or two standard deviations, as more is rare."""
+    amplitudes = water.rows[:, 0]
+    return float(min(np.abs(amplitudes).sum(), 2.0 * math.sqrt(0.5 * (amplitudes**2).sum())))
