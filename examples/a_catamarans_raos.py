@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from buoyancy_mj import JonswapSea, respond
 
 periods = [1.0, 1.5, 2.0, 3.0]  # [s]
