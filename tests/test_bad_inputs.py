@@ -293,6 +293,8 @@ COMMANDS = {
     "ballast": ["ballast", "hourglass", "--reserve", "0"],
     "sweep": ["sweep", "hourglass_drop_still", "--over", "mass=1:2:2", "--out", "out.csv"],
     "sitl": ["sitl", "bluerov2_heavy_dive", "--port", "0", "--timeout", "0.1"],
+    "respond": ["respond", "hourglass", "--periods", "4"],
+    "decay": ["decay", "hourglass"],
     "paper": ["paper"],
     "validate": ["validate"],
     "list": ["list"],

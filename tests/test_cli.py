@@ -330,3 +330,13 @@ def test_a_shell_completes_commands():
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_completion_is_installed_by_a_script(shell):
     assert f"_BUOYANCY_MJ_COMPLETE=complete_{shell}" in completion(f"source_{shell}")
+
+
+@pytest.mark.parametrize("name", list(MODULES))
+def test_the_help_of_every_command_ends_with_two_examples(name):
+    told = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "80"}).stdout
+    *_, title, one, two = told.rstrip().splitlines()
+    assert title.strip() == "Examples:"
+    for example in (one, two):
+        assert example.split()[:2] == ["buoyancy-mj", name]
+        assert len(example) <= 80

@@ -380,7 +380,7 @@ def raft(tmp_path, monkeypatch):
 
 
 def test_inspect_prints_tables(raft):
-    result = raft("inspect", "--water", "density=1025")
+    result = raft("inspect", "--water", "density=1025", "--details")
     assert result.exit_code == 0, result.output
     for word in (
         "what displaces water",
@@ -506,3 +506,43 @@ def test_bad_flags_are_told_in_a_sentence(raft, arguments, message):
 def test_what_was_mended_is_no_warning_of_the_inspection(recwarn):
     inspect_model(mesh_model(BALL.vertices, BALL.faces[1:]))
     assert not [entry for entry in recwarn if issubclass(entry.category, BuoyancyWarning)]
+
+
+# in brief
+
+
+def told_of(name, *flags):
+    result = CliRunner().invoke(app, ["inspect", name, *flags], env={"COLUMNS": "80"})
+    assert result.exit_code == 0, result.output
+    return [line.rstrip() for line in result.stdout.splitlines()]
+
+
+def test_a_report_begins_with_its_verdict_and_ends_with_what_to_do_next():
+    for name, verdict in (("bluerov2_heavy", "sinks: 0.1 kg"), ("catamaran", "floats: 87.9 kg")):
+        lines = told_of(name)
+        assert lines[0].startswith(f"{name} {verdict}")
+        assert "Next" in lines
+        assert lines[-1] == f"   buoyancy-mj inspect {name} --plot {name}"
+
+
+def test_equal_geoms_are_one_row():
+    rows = [" ".join(line.split()) for line in told_of("bluerov2_heavy")]
+    assert "8 thrusters cylinder 0.2262 1.81 13.5" in rows
+    assert "2 x foam box 1.836 3.673 27.4" in rows
+    details = told_of("bluerov2_heavy", "--details")
+    assert any(line.startswith(" horizontal_front_port ") for line in details)
+
+
+@pytest.mark.parametrize("flags", [(), ("--details", "--added-mass", "ellipsoid")])
+def test_a_report_is_whole_on_eighty_columns(flags):
+    for name in ("bluerov2_heavy", "catamaran", "glider"):
+        lines = told_of(name, *flags)
+        assert max(map(len, lines)) <= 80
+        # what is cut off ends with dots
+        assert not any("\N{HORIZONTAL ELLIPSIS}" in line for line in lines)
+        assert " ".join(lines).count("doubt [%]") == len(flags) // 2
+
+
+def test_a_draft_is_told_beside_the_height_of_the_vessel():
+    (draft,) = [line for line in told_of("hourglass") if line.startswith(" draft")]
+    assert draft.split() == ["draft", "0.3394", "m", "of", "0.4", "m", "height"]

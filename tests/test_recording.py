@@ -374,7 +374,7 @@ def test_a_run_that_breaks_off_says_why_and_where_its_recording_is(tmp_path, mon
     monkeypatch.chdir(tmp_path)
     target, name = {
         "a frame is added": (BodyDrawing, "draw"),
-        "it is closed": (recording_module, "write_summary"),
+        "it is closed": (recording_module, "write_numbers"),
     }[when]
     calls = []
     original = getattr(target, name)

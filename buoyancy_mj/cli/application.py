@@ -6,7 +6,7 @@ import inspect
 import io
 import sys
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, NoReturn
 
@@ -22,7 +22,9 @@ from buoyancy_mj.errors import BuoyancyError
 from buoyancy_mj.vehicle import plugins as plugins
 
 
-def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable[..., None]]:
+def command(
+    name: str | None = None, *, examples: Sequence[str] = ()
+) -> Callable[[Callable[..., None]], Callable[..., None]]:
     """Register a function as a command of the application.
 
     A parameter whose type is a dataclass of flags becomes one flag for each field, see
@@ -31,6 +33,7 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
 
     Args:
         name: name of the command; that of the function if None.
+        examples: what may follow the name of the program, for the end of the help.
     """
 
     def register(function: Callable[..., None]) -> Callable[..., None]:
@@ -45,7 +48,9 @@ def command(name: str | None = None) -> Callable[[Callable[..., None]], Callable
 
         run.__signature__ = spread  # type: ignore[attr-defined]
         run.__annotations__ = {p.name: p.annotation for p in spread.parameters.values()}
-        return app.command(name)(run)
+        lines = "".join(f"\n  buoyancy-mj {example}" for example in examples)
+        # a backspace keeps the lines behind it as they are
+        return app.command(name, epilog=f"\b\nExamples:{lines}")(run)
 
     return register
 

@@ -82,7 +82,12 @@ class AutopilotFlags:
         return Link(host, self.port, expose=self.expose)
 
 
-@command()
+@command(
+    examples=(
+        "sitl bluerov2_heavy_dive --rate 400",
+        "sitl my_scene.toml --port 9002 --record flight.rrd",
+    ),
+)
 def sitl(
     scene: SceneArgument,
     flags: SceneFlags,

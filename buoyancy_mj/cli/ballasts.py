@@ -22,7 +22,13 @@ from buoyancy_mj.statics.ballast import ballast
 Box = tuple[float, float, float, float, float, float]
 
 
-@command("ballast")
+@command(
+    "ballast",
+    examples=(
+        "ballast sauvc_auv --reserve 0 --box -.1 -.1 -.2 .1 .1 0",
+        "ballast my_boat.xml --draft 0.3 --out trimmed.xml",
+    ),
+)
 def ballast_(
     model: ModelArgument,
     out_file: Annotated[

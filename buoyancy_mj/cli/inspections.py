@@ -22,6 +22,7 @@ from buoyancy_mj.files import replace_file, require_own
 from buoyancy_mj.hulls.mjcf import embed_meshes, write_mjcf
 from buoyancy_mj.inspection import json_report, report
 from buoyancy_mj.inspection.inspection import Inspection, inspect_model
+from buoyancy_mj.inspection.next_steps import list_next_steps
 from buoyancy_mj.loads.added_mass import SOURCES, check_source
 from buoyancy_mj.meshes.mesh import TriMesh
 from buoyancy_mj.scenes import catalog
@@ -32,11 +33,20 @@ _REPORT_MARK = "<!-- written by buoyancy-mj inspect -->"
 """The last line of a report."""
 
 
-@command("inspect")
+@command(
+    "inspect",
+    examples=(
+        "inspect sauvc_auv --water density=1025",
+        "inspect my_auv.xml --details --plot report --record inspect.rrd",
+    ),
+)
 def inspect_(
     model: ModelArgument,
     water: WaterOption = None,
     as_json: Json = False,
+    details: Annotated[
+        bool, typer.Option("--details", help="Tell of each geom and mesh, and of all rest poses.")
+    ] = False,
     added_mass: Annotated[
         str | None,
         typer.Option(
@@ -90,7 +100,8 @@ def inspect_(
     if as_json:
         typer.echo(json.dumps(json_report.to_json(inspection), indent=2, allow_nan=False))
     else:
-        out.print(report.to_tables(inspection))
+        steps = list_next_steps(inspection, model, details=details)
+        out.print(report.to_tables(inspection, steps, details=details))
 
     # files; the standard error tells of them, since the standard output may be JSON
     if plot is not None:

@@ -10,7 +10,12 @@ from buoyancy_mj.cli import console
 from buoyancy_mj.cli.application import command
 
 
-@command()
+@command(
+    examples=(
+        "paper --quick",
+        "paper --only volume --out figures",
+    ),
+)
 def paper(
     only: Annotated[
         list[str] | None, typer.Option(help="Run this study alone; a wrong name lists them all.")

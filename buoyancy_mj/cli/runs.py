@@ -28,7 +28,12 @@ from buoyancy_mj.scenes.scene import read_scene
 from buoyancy_mj.scenes.simulation import Simulation
 
 
-@command()
+@command(
+    examples=(
+        "run auv_waves --video waves.mp4",
+        "run auv_waves --vehicle my_auv.xml --duration 20",
+    ),
+)
 def run(
     scene: SceneArgument,
     flags: RunFlags,
@@ -97,7 +102,13 @@ def run(
         wait_for_interrupt()
 
 
-@command("list")
+@command(
+    "list",
+    examples=(
+        "list",
+        "list | grep sauvc",
+    ),
+)
 def list_() -> None:
     """List the scenes and models that ship."""
     scenes = {name: read_scene(path).title for name, path in catalog.scenes().items()}

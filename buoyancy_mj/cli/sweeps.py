@@ -22,7 +22,12 @@ SOME_FAILED = 3
 """Exit status of a sweep that is complete, and some of whose runs failed."""
 
 
-@command()
+@command(
+    examples=(
+        "sweep auv_waves --over mass=20:25:6 --out masses.csv",
+        "sweep auv_waves --over mass=20,25 --measure gyro --out gyro.csv",
+    ),
+)
 def sweep(
     scene: SceneArgument,
     over: Annotated[

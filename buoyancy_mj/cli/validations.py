@@ -11,7 +11,12 @@ from buoyancy_mj.cli.application import command
 from buoyancy_mj.errors import BuoyancyError
 
 
-@command()
+@command(
+    examples=(
+        "validate",
+        "validate --only small_sphere",
+    ),
+)
 def validate(
     only: Annotated[
         list[str] | None, typer.Option(help="Run this case alone; a wrong name lists them all.")

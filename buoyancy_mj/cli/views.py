@@ -18,7 +18,12 @@ LOOPBACK = "127.0.0.1"
 LAST_PORT = 65535
 
 
-@command()
+@command(
+    examples=(
+        "view auv_waves",
+        "view fleet --web --port 8080",
+    ),
+)
 def view(
     scene: Annotated[
         str,

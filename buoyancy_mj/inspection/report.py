@@ -9,6 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from buoyancy_mj.hulls.placed_ballasts import PlacedBallast
+from buoyancy_mj.inspection.brief import describe_in_brief, write_verdicts
 from buoyancy_mj.inspection.geom_sections import describe_geoms, describe_meshes
 from buoyancy_mj.inspection.inspection import Inspection, Overlap
 from buoyancy_mj.inspection.tables import Section, format_degrees, format_number
@@ -16,43 +17,75 @@ from buoyancy_mj.inspection.vessel_sections import describe_vessel
 from buoyancy_mj.loads.added_mass_estimates import Estimate
 from buoyancy_mj.loads.foil_arrays import PlacedFoil
 
+_MOTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+
 
 def list_sections(inspection: Inspection) -> tuple[Section, ...]:
     """List the sections of a report, in the order in which a person asks."""
     sections = [
         describe_geoms(inspection.title, inspection.geoms),
         *describe_meshes(inspection.geoms),
+        *_list_parts(inspection),
     ]
+    for vessel in inspection.vessels:
+        sections += describe_vessel(vessel, alone=len(inspection.vessels) == 1)
+    return (*sections, *_list_rest(inspection))
+
+
+def _list_parts(inspection: Inspection) -> list[Section]:
+    """Sections on what vessels have beside their geoms."""
+    sections = []
     if inspection.overlaps:
         sections.append(_describe_overlaps(inspection.overlaps))
     if inspection.foils:
         sections.append(_describe_foils(inspection.foils))
     if inspection.ballast:
         sections.append(_describe_ballast(inspection.ballast))
-    for vessel in inspection.vessels:
-        sections += describe_vessel(vessel, alone=len(inspection.vessels) == 1)
+    return sections
+
+
+def _list_rest(inspection: Inspection) -> list[Section]:
+    """Sections that come last."""
+    sections = []
     if inspection.added_mass:
         sections.append(_describe_added_mass(inspection.added_mass))
     if inspection.problems:
         sections.append(Section("Problems", (), (), inspection.problems))
-    return tuple(sections)
+    return sections
 
 
-def to_tables(inspection: Inspection) -> Group:
-    """Write the report for a terminal."""
-    parts: list[RenderableType] = []
-    for section in list_sections(inspection):
-        if section.rows:
-            parts.append(_draw_table(section))
-        else:
-            parts.append(Text(section.title, style="italic"))
+def to_tables(
+    inspection: Inspection, steps: Sequence[tuple[str, str]] = (), *, details: bool = True
+) -> Group:
+    """Write the report for a terminal: the verdict, what it rests on, and what to do next.
+
+    Args:
+        inspection: what was found.
+        steps: what to do next, and how.
+        details: whether to tell of each geom and mesh, and of all rest poses.
+    """
+    parts: list[RenderableType] = [
+        Text(verdict, style="bold") for verdict in write_verdicts(inspection)
+    ]
+    for section in list_sections(inspection) if details else _list_brief(inspection):
+        parts += [Text(), _draw_table(section) if section.rows else Text(section.title, "italic")]
         parts += [Text(note) for note in section.notes]
+    if steps:
+        parts += [Text(), Text("Next", style="italic")]
+        parts += [Text(f" {what}:\n   {how}") for what, how in steps]
     return Group(*parts)
+
+
+def _list_brief(inspection: Inspection) -> list[Section]:
+    """The sections of a report in brief."""
+    groups, *vessels = describe_in_brief(inspection)
+    return [groups, *_list_parts(inspection), *vessels, *_list_rest(inspection)]
 
 
 def to_markdown(inspection: Inspection, pictures: Sequence[tuple[str, str]] = ()) -> str:
     """Write the report as Markdown, with pictures (caption, file) at its end."""
     lines = [f"# {inspection.title}", ""]
+    lines += [line for verdict in write_verdicts(inspection) for line in (f"**{verdict}**", "")]
     for section in list_sections(inspection):
         lines += [f"## {section.title}", ""]
         if section.rows:
@@ -119,14 +152,8 @@ def _describe_added_mass(estimates: Mapping[str, Estimate]) -> Section:
         diagonal = (format_number(value) for value in np.diag(estimate.matrix))
         rows.append((name, *diagonal, estimate.method, share))
     return Section(
-        title="Added mass fully submerged, about the origin of each body",
-        header=(
-            "body",
-            *(f"{name} [kg]" for name in ("surge", "sway", "heave")),
-            *(f"{name} [kg m^2]" for name in ("roll", "pitch", "yaw")),
-            "from",
-            "extrapolated [%]",
-        ),
+        title="Added mass fully submerged, about the origin of each body [kg, kg m^2]",
+        header=("body", *_MOTIONS, "from", "doubt [%]"),
         rows=tuple(rows),
     )
 

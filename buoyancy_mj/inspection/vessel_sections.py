@@ -66,13 +66,13 @@ def _describe_budgets(inspection: VesselInspection) -> Section:
         rows=tuple(tuple(row[i] for i in kept) for row in rows),
         notes=(
             inspection.sentence,
-            *((_describe_centres(inspection),) if known else ()),
+            *((describe_centres(inspection),) if known else ()),
             *inspection.notes,
         ),
     )
 
 
-def _describe_centres(inspection: VesselInspection) -> str:
+def describe_centres(inspection: VesselInspection) -> str:
     """Where the centres of gravity and of buoyancy are, and how far apart."""
     name = inspection.total.body
     frame = "its own frame" if len(inspection.root_names) == 1 else f"the frame of '{name}'"
@@ -112,7 +112,7 @@ def _describe_rest(title: str, rest: Equilibrium) -> Section:
         ("KB, KG, BG", format_numbers((at.KB, at.KG, at.BG)), "m"),
         ("BM across, along", format_numbers((at.BMt, at.BMl)), "m"),
         ("GM across, along", format_numbers((at.GMt, at.GMl)), "m"),
-        *_describe_free_surface(at),
+        *describe_free_surface(at),
         (
             "periods of heave, roll, pitch",
             format_numbers(at.natural_periods()),
@@ -125,7 +125,7 @@ def _describe_rest(title: str, rest: Equilibrium) -> Section:
     return Section(title, (), rows)
 
 
-def _describe_free_surface(at: Hydrostatics) -> tuple[tuple[str, str, str], ...]:
+def describe_free_surface(at: Hydrostatics) -> tuple[tuple[str, str, str], ...]:
     """What the water in tanks takes off GM; nothing without free surfaces."""
     if not at.free_surface.any():
         return ()

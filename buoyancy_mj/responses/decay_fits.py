@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from buoyancy_mj.errors import ResponseError
@@ -12,6 +13,10 @@ LEAST = 0.03
 """Part of the first peak below which peaks are left out."""
 LEAST_PEAKS = 4
 """Peaks that a fit of two damping coefficients needs."""
+
+
+ROUNDS = 3
+"""How often the fit is put right."""
 
 
 class Peaks(NamedTuple):
@@ -27,15 +32,15 @@ class DecayFit(NamedTuple):
     """A decay as x'' + p1 x' + p2 |x'| x' + w^2 x = 0."""
 
     period: float
-    """Mean period between peaks, damped, T [s]."""
+    """Damped period, T [s]."""
     linear: float
     """Linear damping over inertia, p1 [1/s]."""
     quadratic: float
     """Quadratic damping over inertia, p2 [1/m, or 1/rad]."""
     amplitudes: NDArray[np.float64]
-    """Amplitude of each swing (n,), between a peak and the next but one."""
+    """Mean amplitude of each period (n,), from a peak to the next but one."""
     decrements: NDArray[np.float64]
-    """Logarithmic decrement of each over a whole period (n,)."""
+    """Logarithmic decrement of each (n,)."""
 
     @property
     def omega(self) -> float:
@@ -83,8 +88,8 @@ def fit_decay(peaks: Peaks) -> DecayFit:
 
     Over a period T the amplitude X goes down by the factor e^-d, with
     2 d / T = p1 + 16 / 3 p2 X / T (Faltinsen 1990, 7.3; the energy that the damping takes over a
-    cycle, as Froude 1874). Amplitudes are half the way from a peak to the next, so that where the
-    motion comes to rest does not matter.
+    cycle, as Froude 1874). That is right where d is small. So the equation that it gives is solved,
+    its decay is fitted in the same way, and what differs is put right, `ROUNDS` times.
 
     Args:
         peaks: the turning points.
@@ -97,19 +102,56 @@ def fit_decay(peaks: Peaks) -> DecayFit:
             f"the motion turned {len(peaks.times) - 1} times before it died down, and a fit needs "
             f"{LEAST_PEAKS - 1} times: it is damped too much to swing; let it go from further away"
         )
-    halves = 0.5 * np.abs(np.diff(peaks.values))
-    period = 2.0 * float(np.diff(peaks.times).mean())
+    amplitudes, decrements = _find_decrements(peaks)
+    first = _fit_small_damping(peaks)
+    equation = first.copy()
+    for _ in range(ROUNDS):
+        solved = _solve(equation, float(peaks.values[0]), len(peaks.times))
+        if len(solved.times) < LEAST_PEAKS:
+            break
+        equation += first - _fit_small_damping(solved)
+    omega, linear, quadratic = equation.tolist()
+    damped = math.sqrt(max(omega**2 - 0.25 * linear**2, 1e-12 * omega**2))
+    return DecayFit(2.0 * math.pi / damped, linear, quadratic, amplitudes, decrements)
 
-    # from a half swing to the next but one, a whole period later
-    decrements = np.log(halves[:-2] / halves[2:])
-    amplitudes = halves[1:-1]
+
+def _find_decrements(peaks: Peaks) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Mean amplitude of each period, and its decrement.
+
+    Amplitudes are half the way from a peak to the next, so that where the motion comes to rest does
+    not matter; Simpson's rule gives the mean.
+    """
+    halves = 0.5 * np.abs(np.diff(peaks.values))
+    means = (halves[:-2] + 4.0 * halves[1:-1] + halves[2:]) / 6.0
+    return means, np.log(halves[:-2] / halves[2:])
+
+
+def _fit_small_damping(peaks: Peaks) -> NDArray[np.float64]:
+    """w, p1 and p2 (3,) by the formula for small decrements."""
+    period = 2.0 * float(np.diff(peaks.times).mean())
+    amplitudes, decrements = _find_decrements(peaks)
+    design = np.column_stack([np.ones(len(amplitudes)), 16.0 / 3.0 * amplitudes / period])
     if len(amplitudes) == 1:
-        linear, quadratic = 2.0 * float(decrements[0]) / period, 0.0
-    else:
-        design = np.column_stack([np.ones(len(amplitudes)), 16.0 / 3.0 * amplitudes / period])
-        # what a small swing says is worth less
-        weights = amplitudes[:, None]
-        (linear, quadratic), *_ = np.linalg.lstsq(
-            weights * design, weights[:, 0] * 2.0 * decrements / period, rcond=None
-        )
-    return DecayFit(period, float(linear), float(quadratic), amplitudes, decrements)
+        # one decrement tells one coefficient
+        design = design[:, :1]
+    found, *_ = np.linalg.lstsq(design, 2.0 * decrements / period, rcond=None)
+    linear = float(found[0])
+    quadratic = float(found[1]) if len(found) > 1 else 0.0
+    return np.array([math.hypot(2.0 * math.pi / period, 0.5 * linear), linear, quadratic])
+
+
+def _solve(equation: NDArray[np.float64], start: float, count: int) -> Peaks:
+    """The first turning points of a decay that obeys w, p1 and p2 (3,)."""
+    omega, linear, quadratic = equation.tolist()
+
+    def accelerate(_: float, state: NDArray[np.float64]) -> tuple[float, float]:
+        x, v = state.tolist()
+        return v, -linear * v - quadratic * abs(v) * v - omega**2 * x
+
+    end = math.pi / omega * (count + 1)
+    times = np.linspace(0.0, end, 60 * (count + 1))
+    solved = scipy.integrate.solve_ivp(
+        accelerate, (0.0, end), (start, 0.0), t_eval=times, rtol=1e-6, atol=1e-9 * abs(start)
+    )
+    found = find_peaks(solved.t, solved.y[0])
+    return Peaks(found.times[:count], found.values[:count])

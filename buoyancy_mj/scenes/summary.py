@@ -127,6 +127,10 @@ class Summary:
         """
         return summary_rows.list_rows(self)
 
+    def numbers(self) -> list[tuple[str, ...]]:
+        """The numbers of `rows` alone, without what they are compared with."""
+        return summary_rows.list_numbers(self)
+
     @property
     def caption(self) -> str:
         """What holds for the whole run, in a line or two."""

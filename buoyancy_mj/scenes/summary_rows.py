@@ -23,9 +23,7 @@ def list_rows(summary: "Summary") -> list[Row]:
     """
     names = list(summary.vehicles)
     if len(names) > 1:
-        tables = [dict(_list_numbers(one)) for one in summary.vehicles.values()]
-        longest = max(tables, key=len)
-        return [(name, *(table.get(name, "") for table in tables)) for name in longest]
+        return list_numbers(summary)
     ((name, one),) = summary.vehicles.items()
     *numbers, contact = _compare_numbers(one, summary.sea, summary.natural_periods.get(name))
     return [
@@ -36,6 +34,13 @@ def list_rows(summary: "Summary") -> list[Row]:
         ("real-time factor", f"{summary.real_time_factor:.1f} x"),
         contact,
     ]
+
+
+def list_numbers(summary: "Summary") -> list[Row]:
+    """The rows of a summary without comparisons, narrow enough for a column for each vehicle."""
+    tables = [dict(_list_numbers(one)) for one in summary.vehicles.values()]
+    longest = max(tables, key=len)
+    return [(name, *(table.get(name, "") for table in tables)) for name in longest]
 
 
 def write_caption(summary: "Summary") -> str:

@@ -22,7 +22,7 @@ LEGEND_ROW = 30.0
 """Height of a row of the legend [pixels]."""
 WINDOW = 806.0
 """Height of what a window of 1600 x 900 shows of the layout [pixels]."""
-MOST_TEXT = 0.5
+MOST_TEXT = 0.4
 """Greatest part of it that texts take."""
 
 
@@ -33,7 +33,7 @@ def run_blueprint(
     *,
     texts: Sequence[str],
     rows: int,
-    tabs: Sequence[rrb.Container],
+    tabs: Sequence[rrb.Container | rrb.View],
 ) -> rrb.Blueprint:
     """Lay out a run: the world and texts on the left, plots on the right, playing at once.
 

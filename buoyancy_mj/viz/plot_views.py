@@ -13,7 +13,7 @@ WIDTH, HEIGHT = 800.0, 806.0
 """Size of a tab in a window of 1600 x 900 [pixels]."""
 FRAME_WIDTH, FRAME_HEIGHT = 40.0, 46.0
 """What title and labels take of a view [pixels]."""
-ONE_COLUMN = 4
+ONE_COLUMN = 5
 """Most plots that stand in one column."""
 FREE = 0.17
 """Part of the axis of time that stays free for the legend, which would cover lines elsewhere."""

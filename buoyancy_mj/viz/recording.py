@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import rerun as rr
+import rerun.blueprint as rrb
 
 from buoyancy_mj.errors import BuoyancyWarning
 from buoyancy_mj.scenes.fleet import Vehicle
@@ -26,7 +27,7 @@ from buoyancy_mj.viz.rrd import RrdFile
 from buoyancy_mj.viz.spectra import Spectra
 from buoyancy_mj.viz.surroundings import Surroundings
 from buoyancy_mj.viz.tendons import TendonDrawing
-from buoyancy_mj.viz.texts import write_summary
+from buoyancy_mj.viz.texts import write_numbers, write_summary
 from buoyancy_mj.viz.thrusters import ThrusterDrawing
 from buoyancy_mj.viz.viewers import NOBODY, Viewers
 from buoyancy_mj.viz.watch import Watch
@@ -34,7 +35,9 @@ from buoyancy_mj.viz.watch import Watch
 FLUSH_EVERY, LIVE_EVERY = 1.0, 0.25
 """Time [s] between writes to the file, and what a live viewer lags; a run that is killed loses no
 more of its work."""
-EXPECTED_ROWS = 12
+NUMBERS, SUMMARY = "numbers", "summary"
+"""Entities of the summary in short and as a whole."""
+EXPECTED_ROWS = 10
 """Rows of a summary that there is not yet."""
 
 
@@ -66,7 +69,7 @@ class Recording:
     ) -> None:
         self.run = run
         """The run."""
-        self._texts = ("summary", "scene") if has_summary else ("scene",)
+        self._texts = (NUMBERS, "scene") if has_summary else ("scene",)
         # streams of one recording, to the file and to the viewer
         identity = str(uuid.uuid4())
         self._every = LIVE_EVERY if viewers else FLUSH_EVERY
@@ -179,8 +182,9 @@ class Recording:
         """
         rows = EXPECTED_ROWS
         if summary is not None:
-            text, rows = write_summary(summary)
-            self._log_text("summary", text)
+            text, rows = write_numbers(summary)
+            self._log_text(NUMBERS, text)
+            self._log_text(SUMMARY, write_summary(summary))
         self._log.send()
         if self._spectra.known:
             self._spectra.draw(self._log)
@@ -234,6 +238,8 @@ class Recording:
         laid = lay_out_tabs(vehicles_own, shared, extents, times)
         if self._spectra.known:
             laid.append(lay_out_spectra(self._spectra.entities))
+        if NUMBERS in self._texts:
+            laid.append(rrb.TextDocumentView(origin=SUMMARY, name=SUMMARY.capitalize()))
         layout = run_blueprint(
             run.title,
             self._surroundings,

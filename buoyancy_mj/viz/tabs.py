@@ -14,9 +14,10 @@ MOST_LINES = 8
 MOST_PLOTS = 8
 """Most plots of instruments in one tab."""
 SMALLER = 0.1
-"""Greatest value of a force over the greatest of its plot, below which it has another plot."""
-_FORCES = ("forces [N]", "smaller forces [N]", "smallest forces [N]")
-"""Titles of the plots of forces, by size."""
+"""Size of a line over the largest of its plot, below which it has another plot."""
+FORCES = ("forces [N]", "smaller forces [N]", "smallest forces [N]")
+ANGLES = ("attitude [degrees]", "smaller angles [degrees]")
+"""Titles of the plots of forces and of angles, by size."""
 
 T = TypeVar("T")
 Extents = Mapping[str, tuple[float, float]]
@@ -57,13 +58,14 @@ def list_vehicle_tabs(
         """A plot of lines of the vehicle."""
         return Plot(title, tuple(plots.entity(line, name) for line in lines))
 
+    angles = [plots.entity(("attitude", axis), name) for axis in ("roll", "pitch", "yaw")]
     forces = [plots.entity(("force", cause), name) for cause in ("weight", *causes)]
     yield Tab(
         MOTION,
         (
             plot("height [m]", ("height", "centre_of_gravity"), ("height", "surface")),
-            plot("attitude [degrees]", *(("attitude", axis) for axis in ("roll", "pitch", "yaw"))),
-            *_group_forces(forces, extents),
+            *_group_by_size(ANGLES, [angles], extents),
+            *_group_by_size(FORCES, [forces[:2], forces[2:]], extents),
         ),
     )
 
@@ -100,18 +102,28 @@ def list_instrument_tabs(channels: Sequence[Channel]) -> Iterator[Tab]:
         yield Tab(INSTRUMENTS if number == 1 else f"{INSTRUMENTS} {number}", some)
 
 
-def _group_forces(forces: Sequence[str], extents: Extents) -> Iterator[Plot]:
-    """Plots of forces by their greatest values; before these are known, by what they are."""
-    groups = [list(forces[:2]), list(forces[2:])]
-    if extents:
-        groups, top = [], 0.0
-        for force in sorted(forces, key=lambda one: -extents[one][1]):
-            peak = extents[force][1]
-            if not groups or (peak < SMALLER * top and len(groups) < len(_FORCES)):
-                groups.append([])
-                top = peak
-            groups[-1].append(force)
-    for title, group in zip(_FORCES, filter(None, groups), strict=False):
+def _group_by_size(
+    titles: Sequence[str], groups: Sequence[Sequence[str]], extents: Extents
+) -> Iterator[Plot]:
+    """Plots of lines of one unit by the size of their values, the largest first.
+
+    Args:
+        titles: titles of the plots, of which there are no more.
+        groups: the lines, as they are grouped before their sizes are known.
+        extents: what the lines reach, where that is known.
+    """
+    lines = [line for group in groups for line in group]
+    sizes = {line: max(map(abs, extents[line])) for line in lines if line in extents}
+    parts = [list(group) for group in groups]
+    if sizes:
+        parts, top = [], 0.0
+        for line in sorted(lines, key=lambda one: -sizes.get(one, 0.0)):
+            size = sizes.get(line, 0.0)
+            if not parts or (size < SMALLER * top and len(parts) < len(titles)):
+                parts.append([])
+                top = size
+            parts[-1].append(line)
+    for title, group in zip(titles, filter(None, parts), strict=False):
         yield Plot(title, tuple(group))
 
 

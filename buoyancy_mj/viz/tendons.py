@@ -29,19 +29,29 @@ class TendonDrawing:
             tendon: choose_colour(model, model.tendon_rgba[tendon], int(model.tendon_matid[tendon]))
             for tendon in shown.tolist()
         }
-        self._colours = {tendon: rgba for tendon, rgba in colours.items() if rgba[3] > 0.0}
+        self._colours = {
+            tendon: int((255.0 * rgba).astype(np.uint8).view(">u4")[0])
+            for tendon, rgba in colours.items()
+            if rgba[3] > 0.0
+        }
 
     def draw(self, log: Log, frame: Frame) -> None:
-        """Draw the path of each tendon."""
+        """Draw the path of each tendon, piece by piece."""
         if not self._colours:
             return
-        strips, colours, radii = [], [], []
-        for tendon, rgba in self._colours.items():
-            for strip in find_path(frame.data, tendon):
-                strips.append(strip)
-                colours.append((255.0 * rgba).astype(np.uint8))
-                radii.append(float(self._model.tendon_width[tendon]))
-        log.draw_now(ENTITY, rr.LineStrips3D(strips, colors=colours, radii=radii))
+        pieces, colours, radii = [], [], []
+        for tendon, colour in self._colours.items():
+            for path in find_path(frame.data, tendon):
+                pieces.append(np.stack([path[:-1], path[1:]], axis=1))
+                colours += [colour] * (len(path) - 1)
+                radii += [float(self._model.tendon_width[tendon])] * (len(path) - 1)
+        log.draw(
+            ENTITY,
+            rr.LineStrips3D,
+            strips=np.concatenate([np.zeros((0, 2, 3)), *pieces]),
+            colors=np.array(colours, np.uint32),
+            radii=np.array(radii),
+        )
 
 
 def find_path(data: mujoco.MjData, tendon: int) -> list[NDArray[np.float64]]:

@@ -1,4 +1,4 @@
-"""`write_summary`: the summary of a run as a table in Markdown, no longer than it has to be."""
+"""The summary of a run as tables in Markdown: in short beside the picture, and as a whole."""
 
 from typing import NamedTuple
 
@@ -14,18 +14,22 @@ class Text(NamedTuple):
     """Number of rows of its table."""
 
 
-def write_summary(summary: Summary) -> Text:
-    """Write a summary as a table: two rows beside each other for one vehicle, or a column each."""
-    rows = summary.rows()
+def write_numbers(summary: Summary) -> Text:
+    """Write the numbers of a summary: two beside each other for one vehicle, or a column each."""
+    rows = summary.numbers()
     if len(summary.vehicles) > 1:
-        # the title of the scene would take the width of a vehicle
-        names = ("", *summary.vehicles)
-        return Text(f"{_table(names, rows)}\n{summary.caption}\n", len(rows) + 1)
+        return Text(_table(("", *summary.vehicles), rows), len(rows))
     half = -(-len(rows) // 2)
-    blank = ("",) * len(rows[0])
-    beside = [(*left, *right) for left, right in zip(rows, [*rows[half:], blank], strict=False)]
-    head = (summary.scene, *[""] * (2 * len(blank) - 1))
-    return Text(_table(head, beside[:half]), half)
+    beside = [(*left, *right) for left, right in zip(rows, [*rows[half:], ("", "")], strict=False)]
+    return Text(_table((summary.scene, "", "", ""), beside[:half]), half)
+
+
+def write_summary(summary: Summary) -> str:
+    """Write a summary with each of its rows."""
+    if len(summary.vehicles) > 1:
+        head = ("", *summary.vehicles)
+        return f"{_table(head, summary.rows())}\n{summary.caption}\n"
+    return _table((summary.scene, ""), summary.rows())
 
 
 def _table(head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
