@@ -65,10 +65,11 @@ class BodyDrawing:
 
     def draw(self, log: Log, frame: Frame) -> None:
         """Draw one frame: the poses of bodies, how deep they are, and the waterline."""
-        data = frame.data
+        # looked up once: each look at the engine's data makes an array
+        places, turns = frame.data.xpos, frame.data.xquat[:, TURN]
         for body, entity in self._bodies.items():
-            turn = data.xquat[body][None, TURN]
-            log.draw(entity, rr.Transform3D, translation=data.xpos[body][None], quaternion=turn)
+            here = slice(body, body + 1)
+            log.draw(entity, rr.Transform3D, translation=places[here], quaternion=turns[here])
         self._tint.draw(log, frame)
         if frame.time >= self._due:
             self._due = frame.time + 1.0 / RATE - 1e-6
@@ -91,9 +92,9 @@ class BodyDrawing:
 
     def _draw_waterline(self, log: Log, frame: Frame) -> None:
         """Draw the waterline on all hulls that the surface cuts."""
-        data, hulls = frame.data, self._run.buoyancy.hulls
+        hulls, places, turns = self._run.buoyancy.hulls, frame.data.geom_xpos, frame.data.geom_xmat
         cut = [
-            Placed(hull.mesh, data.geom_xpos[hull.geom], data.geom_xmat[hull.geom])
+            Placed(hull.mesh, places[hull.geom], turns[hull.geom])
             # NaN from a method that does not know the area
             for hull, area in zip(hulls, frame.loads.waterplane_area.tolist(), strict=True)
             if area != 0.0

@@ -87,6 +87,7 @@ class Eye:
             self.distance = float(free[best])
         self._turn = _look_along(-self._away)
         self._time: float | None = None
+        self._step, self._left = 0.0, np.ones(3)
         self._slack = SLACK * min(along, up)
         self._alone = 0.5 * max(vehicle.length for vehicle in run.vehicles.values())
 
@@ -124,11 +125,12 @@ class Eye:
             centres: their centres of mass (n, 3) [m].
             time: [s].
         """
-        low, high = centres.min(axis=0), centres.max(axis=0)
-        self._follow(0.5 * (low + high), time)
         if not self.several:
+            self._follow(centres[0], time)
             log.draw(ENTITY, rr.Transform3D, translation=self.middle[None])
             return
+        low, high = centres.min(axis=0), centres.max(axis=0)
+        self._follow(0.5 * (low + high), time)
         # as far as it takes, and no nearer again
         half = 0.5 * (high - low)
         along = math.hypot(half[0], half[1]) + self._alone
@@ -140,7 +142,10 @@ class Eye:
     def _follow(self, middle: NDArray[np.float64], time: float) -> None:
         """Go after what it looks at, late, but never so late that it leaves the picture."""
         if self._time is not None:
-            behind = (self.middle - middle) * np.exp((self._time - time) / LAG)
+            if time - self._time != self._step:
+                self._step = time - self._time
+                self._left = np.exp(-self._step / LAG)
+            behind = (self.middle - middle) * self._left
             far = math.sqrt(behind @ behind)
             middle = middle + behind * min(1.0, self._slack / max(far, 1e-9))
         self.middle, self._time = middle, time

@@ -62,7 +62,7 @@ class SurfaceDrawing:
             for band in split_waves(water, cells)
         ]
         self._centre = np.full(2, np.nan)
-        self._drawn = self._coloured = -math.inf
+        self._due = self._colours_due = -math.inf
         self._height = math.inf
         self._shades: Shades
 
@@ -76,11 +76,12 @@ class SurfaceDrawing:
 
     def draw(self, log: Log, time: float) -> None:
         """Draw the surface at a time [s], around what the eye looks at."""
-        has_moved = self._follow(log)
-        has_turned = self._look(log)
-        is_still = not self._bands
-        is_due = time >= self._drawn + 1.0 / RATE - 1e-6
-        if not has_moved and not has_turned and (is_still or not is_due):
+        if time < self._due:
+            return
+        self._due = time + 1.0 / RATE - 1e-6
+        has_moved, has_turned = self._follow(log), self._look(log)
+        # still water is the same but for its place and for who looks at it
+        if not self._bands and not has_moved and not has_turned:
             return
         x, y = self._corners[:, 0] + self._centre[0], self._corners[:, 1] + self._centre[1]
         heights = np.zeros(len(self._corners))
@@ -88,16 +89,15 @@ class SurfaceDrawing:
             some = slice(len(band.weights))
             heights[some] += band.weights * band.water.elevation(x[some], y[some], time)
         self._corners[:, 2] = self._step * np.rint(heights / self._step)
-        self._drawn = time
         log.draw(ENTITY, rr.Mesh3D, vertex_positions=self._corners)
 
-        if has_turned or time >= self._coloured + 1.0 / COLOUR_RATE - 1e-6:
+        if has_turned or time >= self._colours_due:
+            self._colours_due = time + 1.0 / COLOUR_RATE - 1e-6
             slopes = np.zeros((len(self._corners), 2))
             for band in self._bands:
                 some = slice(len(band.weights))
                 slope = band.water.slope(x[some], y[some], time)
                 slopes[some] += band.weights[:, None] * slope
-            self._coloured = time
             log.draw(ENTITY, rr.Mesh3D, vertex_colors=self._shades.paint(slopes))
 
     def _follow(self, log: Log) -> bool:
