@@ -1,10 +1,12 @@
 """`Simulation`: run a scene frame by frame."""
 
 import functools
+import importlib
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -225,6 +227,23 @@ class Simulation(ReadOnly):
         self._present = poses_of(self._source.data)
         self._wall_time = time.perf_counter() - started
         return self.summary()
+
+    def show(self) -> Any:
+        """Run the scene to its end, and show it in a notebook.
+
+        Returns:
+            Rerun's viewer with the recording, where `pip install 'buoyancy_mj[notebook]'` has put
+            it; else the summary, with charts of the motion. As the last word of a cell it is shown.
+
+        Raises:
+            SceneError: the scene has run already.
+            DivergenceError: as `frames`.
+
+        Example:
+            `Simulation(read_scene(path)).show()`
+        """
+        # a room downstream draws, and is imported when somebody looks
+        return importlib.import_module("buoyancy_mj.viz.notebook").show_run(self)
 
     def step(self) -> None:
         """Take one timestep with the water acting, steered by the controllers that are due.
