@@ -113,7 +113,7 @@ def test_a_run_is_shown_with_its_summary_and_charts_of_its_motion():
 def test_each_of_several_vehicles_has_its_curves(tmp_path):
     path = tmp_path / "two.toml"
     vehicles = "".join(
-        f'[[vehicles]]\nmodel = "hourglass"\nname = "{name}"\nstart = {{ position = [{x}, 0, 0] }}\n'
+        f'[[vehicles]]\nmodel = "hourglass"\nname = "{name}"\nstart.position = [{x}, 0, 0]\n'
         for name, x in (("one", 0), ("other", 2))
     )
     path.write_text(f'title = "two"\nduration = 0.1\ntimestep = 0.01\n{vehicles}')
