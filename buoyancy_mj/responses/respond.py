@@ -89,6 +89,8 @@ def respond(
             f"that would be {len(waves) * len(angles)} runs; there may be {MOST_RUNS} at most, so "
             "give fewer periods or headings"
         )
+    if amplitude is not None:
+        amplitude = read_number(ResponseError, "amplitude", amplitude, above=0.0)
     if sea is not None:
         check_sea(sea)
 
@@ -202,8 +204,7 @@ def _choose_amplitudes(
 ) -> NDArray[np.float64]:
     """Amplitudes of the waves (p,) [m]."""
     if amplitude is not None:
-        chosen = read_number(ResponseError, "amplitude", amplitude, above=0.0)
-        return np.full(len(wavenumbers), chosen)
+        return np.full(len(wavenumbers), amplitude)
     at = first.at_start
     tall = at.draft if at.waterplane_area > 0.0 else first.simulation.vehicle.length
     return np.minimum(PART_OF_DRAFT * tall, STEEPNESS * math.pi / wavenumbers)
