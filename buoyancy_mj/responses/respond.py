@@ -1,5 +1,6 @@
 """`respond`: response amplitude operators of a vehicle, by regular waves or in an irregular sea."""
 
+import contextlib
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -165,10 +166,10 @@ def _measure(
     ahead = first.at_start.heading
     if sea is not None:
         coherence = np.zeros(shape)
-        jobs = plan.irregular_jobs(ahead, sea)
-        for row, in_sea in enumerate(run_side_by_side(jobs, threads)):
-            transfer[row], coherence[row], sure[row], turned[row] = in_sea
-            each()
+        with contextlib.closing(run_side_by_side(plan.irregular_jobs(ahead, sea), threads)) as done:
+            for row, in_sea in enumerate(done):
+                transfer[row], coherence[row], sure[row], turned[row] = in_sea
+                each()
         return {
             "transfer": transfer,
             "sure": sure,
@@ -176,11 +177,12 @@ def _measure(
             "cycles": cycles,
             "turned": turned,
         }
-    for row, in_wave in enumerate(run_side_by_side(plan.regular_jobs(ahead), threads)):
-        at = divmod(row, len(plan.periods))
-        transfer[at], sure[at], cycles[at] = in_wave.transfer, in_wave.settled, in_wave.periods
-        turned[at] = in_wave.turned
-        each()
+    with contextlib.closing(run_side_by_side(plan.regular_jobs(ahead), threads)) as done:
+        for row, in_wave in enumerate(done):
+            at = divmod(row, len(plan.periods))
+            transfer[at], sure[at], cycles[at] = in_wave.transfer, in_wave.settled, in_wave.periods
+            turned[at] = in_wave.turned
+            each()
     return {
         "transfer": transfer,
         "sure": sure,

@@ -62,7 +62,7 @@ def draw_density(result: Result) -> Figure:
         axes.set(title=body, xlabel="vertices", ylabel="size of the error [%]", ylim=_LIMITS)
         # three numbers that stand apart, over however little of a decade
         low, high = axes.get_xlim()
-        axes.xaxis.set_major_locator(FixedLocator(np.geomspace(1.2 * low, high / 1.2, 3)))
+        axes.xaxis.set_major_locator(FixedLocator(np.geomspace(1.2 * low, high / 1.2, 3).tolist()))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
         axes.xaxis.set_minor_formatter(NullFormatter())
     finish(*all_axes)
