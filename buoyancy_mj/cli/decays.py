@@ -13,9 +13,11 @@ from buoyancy_mj.cli.application import command
 from buoyancy_mj.cli.console import err, out
 from buoyancy_mj.cli.flags import Json, SceneFlags, SelectionFlags
 from buoyancy_mj.cli.response_flags import SubjectArgument, check_file, import_charts, tell_files
+from buoyancy_mj.errors import ResponseError
 from buoyancy_mj.files import replace_file
 from buoyancy_mj.responses.decay import RESTORED, Decay
 from buoyancy_mj.responses.decay import decay as measure
+from buoyancy_mj.values import read_number
 
 
 @command()
@@ -52,8 +54,9 @@ def decay(
     """
     charts = None if plot is None else import_charts("--plot", plot, "decay_charts")
     check_file("--csv", csv, (".csv",))
-    if start is not None and motion != "heave":
-        start = math.radians(start)
+    if start is not None:
+        start = read_number(ResponseError, "--from", start)
+        start = start if motion == "heave" else math.radians(start)
     settings = (*flags.overrides(), *selection.overrides())
     with err.status("letting it go"):
         found = measure(model, motion, start, settings=settings, trust=flags.trust)

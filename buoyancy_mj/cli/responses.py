@@ -20,10 +20,12 @@ from buoyancy_mj.cli.response_flags import (
 from buoyancy_mj.cli.response_tables import list_tables
 from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.cli.sweeps import MOST_THREADS
+from buoyancy_mj.errors import ResponseError
 from buoyancy_mj.responses.respond import respond as measure
 from buoyancy_mj.responses.responses import Responses
 from buoyancy_mj.responses.subject import read_subject
 from buoyancy_mj.responses.tables import to_values
+from buoyancy_mj.values import read_number
 
 
 @command()
@@ -75,6 +77,8 @@ def respond(
     --sea "jonswap significant_height=0.3 peak_period=3"
     """
     waves, angles = parse_numbers("--periods", periods), parse_angles("--heading", heading)
+    if depth is not None:
+        depth = read_number(ResponseError, "--depth", depth, above=0.0)
     sea = in_sea.read()
     files.check()
     scene = read_subject(model, (*flags.overrides(), *selection.overrides()))
