@@ -53,12 +53,6 @@ class Log:
         for stream in self._streams:
             stream.log(entity, *data, static=True)
 
-    def draw_now(self, entity: str, *data: Any) -> None:
-        """Log what an entity shows from the present time on, at once."""
-        for stream in self._streams:
-            stream.set_time(TIMELINE, duration=self.time)
-            stream.log(entity, *data)
-
     def draw(self, entity: str, archetype: Any, **parts: ArrayLike) -> None:
         """Log what an entity shows from the present time on.
 

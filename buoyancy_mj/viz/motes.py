@@ -13,7 +13,7 @@ CUBES = 5
 """Number of cubes along each side of the block that is drawn."""
 COUNT = 8
 """Number of motes in a cube."""
-RADIUS = 0.003
+RADIUS = 0.004
 """Their radius, over the distance of the eye."""
 COLOUR = (190, 232, 236)
 
