@@ -1,7 +1,9 @@
 """What a notebook shows: tables and charts of values, and of a run."""
 
-import importlib.util
 import math
+import os
+import sys
+import types
 from html.parser import HTMLParser
 
 import mujoco
@@ -129,8 +131,18 @@ def test_a_run_is_shown_once():
         simulation.show()
 
 
-@pytest.mark.skipif(
-    importlib.util.find_spec("rerun_notebook") is None, reason="rerun-notebook is not installed"
-)
-def test_a_run_is_shown_in_the_viewer_where_it_is_installed():
-    assert type(simulate("auv_waves", "duration=0.1").show()).__name__ == "Viewer"
+def test_the_viewer_gets_the_whole_recording_where_it_is_installed(monkeypatch):
+    class Viewer:
+        def __init__(self, **size):
+            self.size = size
+
+        def send_rrd(self, data):
+            self.data = data
+
+    monkeypatch.setitem(sys.modules, "rerun_notebook", types.SimpleNamespace(Viewer=Viewer))
+    shown = simulate("auv_waves", "duration=0.1").show()
+    assert shown.size == {"width": notebook.WIDTH, "height": notebook.HEIGHT}
+    assert shown.data.startswith(b"RRF")
+    assert b"/summary" in shown.data
+    # its own viewer, and none from a server
+    assert os.environ["RERUN_NOTEBOOK_ASSET"] == "inline"

@@ -9,8 +9,6 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import rerun as rr
-
 from buoyancy_mj.errors import SceneError
 from buoyancy_mj.scenes.frames import Frame
 from buoyancy_mj.scenes.portrait import draw_motions, portray
@@ -18,8 +16,8 @@ from buoyancy_mj.scenes.simulation import Simulation
 from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.viz.recording import Recording
 
-SIZE = (960, 640)
-"""Width and height of the viewer in pixels."""
+WIDTH, HEIGHT = "auto", 640
+"""Size of the viewer: as wide as the cell, and so many pixels high."""
 HINT = "pip install 'buoyancy_mj[notebook]' shows runs in three dimensions here"
 """What stands under the charts."""
 _ASSET = "RERUN_NOTEBOOK_ASSET"
@@ -87,10 +85,9 @@ def show_run(simulation: Simulation) -> Any:
         for frame in simulation.frames():
             recording.add(frame)
         path = recording.close(simulation.summary(with_periods=True))
-        stream = rr.RecordingStream("buoyancy_mj")
-        viewer.add_recording(stream)
-        stream.log_file_from_path(path)
-        stream.flush(timeout_sec=60.0)
+        assert path is not None
+        # it waits there until the viewer has started
+        viewer.send_rrd(path.read_bytes())
     return viewer
 
 
@@ -101,12 +98,10 @@ def _make_viewer() -> Any:
     try:
         # it says so
         with contextlib.redirect_stdout(io.StringIO()):
-            importlib.import_module("rerun_notebook")
+            widgets = importlib.import_module("rerun_notebook")
     except ImportError:
         return None
-    width, height = SIZE
-    notebook = importlib.import_module("rerun.notebook")
-    return notebook.Viewer(width=width, height=height)
+    return widgets.Viewer(width=WIDTH, height=HEIGHT)
 
 
 def _collect_motions(frames: Iterable[Frame]) -> Motions:
