@@ -20,7 +20,12 @@ from buoyancy_mj.responses.decay import decay as measure
 from buoyancy_mj.values import read_number
 
 
-@command()
+@command(
+    examples=(
+        "decay oes_sphere --motion heave --from 1",
+        "decay catamaran --motion roll --from 10 --plot roll.png",
+    )
+)
 def decay(
     model: SubjectArgument,
     flags: SceneFlags,
@@ -46,11 +51,6 @@ def decay(
     """Let a vehicle go out of its rest, and fit period, damping and added mass.
 
     They are those of x'' + p1 x' + p2 |x'| x' + w^2 x = 0, beside the natural period of statics.
-    For example:
-
-    buoyancy-mj decay oes_sphere --motion heave --from 1
-
-    buoyancy-mj decay catamaran --motion roll --from 10 --plot roll.png
     """
     charts = None if plot is None else import_charts("--plot", plot, "decay_charts")
     check_file("--csv", csv, (".csv",))

@@ -28,7 +28,12 @@ from buoyancy_mj.responses.tables import to_values
 from buoyancy_mj.values import read_number
 
 
-@command()
+@command(
+    examples=(
+        "respond catamaran --periods 1:6:11 --heading 0:180:7",
+        "respond auv_sea_state_2 --periods 2,3,5 --csv raos.csv",
+    )
+)
 def respond(
     model: SubjectArgument,
     flags: SceneFlags,
@@ -69,12 +74,7 @@ def respond(
     """Measure response amplitude operators, by regular waves or in a sea.
 
     The vehicle is held softly at its place and heading. A model is put into fresh water with the
-    pressure of Froude and Krylov; a scene keeps its own water. For example:
-
-    buoyancy-mj respond catamaran --periods 1:6:11 --heading 0:180:7 --plot raos.png
-
-    buoyancy-mj respond catamaran --periods 2:5:7 --irregular
-    --sea "jonswap significant_height=0.3 peak_period=3"
+    pressure of Froude and Krylov; a scene keeps its own water.
     """
     waves, angles = parse_numbers("--periods", periods), parse_angles("--heading", heading)
     if depth is not None:
