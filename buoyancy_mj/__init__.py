@@ -65,6 +65,8 @@ if TYPE_CHECKING:
     from buoyancy_mj.scenes.scene import read_scene as read_scene
     from buoyancy_mj.scenes.scene_vehicle import SceneVehicle as SceneVehicle
     from buoyancy_mj.scenes.scene_vehicle import Start as Start
+    from buoyancy_mj.scenes.seakeeping import Seakeeping as Seakeeping
+    from buoyancy_mj.scenes.seakeeping import Spread as Spread
     from buoyancy_mj.scenes.simulation import Simulation as Simulation
     from buoyancy_mj.scenes.summary import Summary as Summary
     from buoyancy_mj.scenes.summary import VehicleSummary as VehicleSummary

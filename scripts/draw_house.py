@@ -31,7 +31,7 @@ WIDTH, HEIGHT, GAP = 12.0, 1.1, 0.72
 """Width of the picture, height of a room and distance between floors."""
 LEAST = 2.15
 """Width of a room without lines, at which its name and their number stand side by side."""
-EVERYWHERE = {"errors", "files", "records", "values"}
+EVERYWHERE = {"displays", "errors", "files", "records", "values"}
 """Small rooms that serve any other, so that their streams would say nothing."""
 INK, WATER, BANK = "#12343b", "#2a8ca8", "#e9f4f5"
 

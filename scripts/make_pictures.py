@@ -4,8 +4,9 @@
 
 Films and stills are drawn by `buoyancy-mj run`, see docs/guide/film.md. Pictures of recordings are
 those that the Rerun viewer takes of itself, and one is of Studio's window; both are opened on a
-screen that is not there, by Xvfb. Charts come from the scripts that measure what they show:
-bench.py, draw_house.py, reproduce_paper, and `buoyancy-mj validate`.
+screen that is not there, by Xvfb. Charts come from `buoyancy-mj respond` and `decay`, and others
+from the scripts that measure what they show: bench.py, draw_house.py, reproduce_paper, and
+`buoyancy-mj validate`.
 """
 
 import argparse
@@ -52,6 +53,11 @@ RECORDINGS: Mapping[str, Sequence[str]] = {
 """Commands whose recordings are shown, by the names of the pictures in docs."""
 FILES = ROOT / "docs" / "first_hour.md"
 """The page that has the files which commands name."""
+CHARTS: Mapping[str, Sequence[str]] = {
+    "responses.png": ("respond", "catamaran", "--periods=0.6:4:18", "--heading=0:180:5"),
+    "decay.png": ("decay", "catamaran", "--motion=roll", "--from=10"),
+}
+"""Commands that plot, by the names of the pictures in docs."""
 WINDOWS: Mapping[str, str] = {"studio.png": "auv_sea_state_2"}
 """Scenes that `buoyancy-mj view` shows, by the names of the pictures in docs."""
 PATIENCE = 60.0
@@ -60,7 +66,7 @@ PATIENCE = 60.0
 
 def main() -> None:
     """Make the pictures that are asked for, or all."""
-    every = [*FILMS, *STILLS, *RECORDINGS, *WINDOWS]
+    every = [*FILMS, *STILLS, *RECORDINGS, *CHARTS, *WINDOWS]
     parser = argparse.ArgumentParser(description="Make the pictures of README.md and docs.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(every)}")
     asked = parser.parse_args().names or every
@@ -89,6 +95,8 @@ def _make(name: str, path: Path) -> None:
         with _open_screen("1600x900") as environment:
             command = [str(viewer), str(recording), *flags]
             subprocess.run(command, check=True, timeout=180, env=environment)
+    elif name in CHARTS:
+        run_in(path.parent, *CHARTS[name], f"--plot={path}")
     elif name in WINDOWS:
         _photograph_window(WINDOWS[name], path)
     elif name in FILMS:

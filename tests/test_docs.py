@@ -193,6 +193,10 @@ def understand(command, *words):
         if not set(words) & RECORDING:
             # a recording that nobody asks for takes longer than such a run
             words.append("--no-record")
+    elif command in ("respond", "decay"):
+        shorter = {"--periods": "4", "--heading": "180"}
+        words = [shorter.get(flag, word) for flag, word in zip(["", *words], words, strict=False)]
+        words += ["--set", "added_mass=none"]
     elif command == "sweep":
         words = [re.sub(r":\d$", ":1", word) for word in words] + ["--duration", "0.02"]
         if "--on" in words:

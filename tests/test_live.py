@@ -64,7 +64,8 @@ def test_rerun_has_the_viewer_inside_that_the_page_starts(tmp_path):
     assert (tmp_path / "re_viewer_bg.wasm").read_bytes()[:4] == b"\0asm"
     assert (tmp_path / "index.html").read_text() == VIEWER
     assert "class WebHandle" in code
-    assert "wasm_bindgen" in code
+    for name in re.findall(r"viewer\.(\w+)\(", VIEWER):
+        assert re.search(rf"^\s+{name}\(", code, re.MULTILINE), name
 
 
 @pytest.mark.long

@@ -20,6 +20,7 @@ from buoyancy_mj import (
     TriMesh,
     Water,
     add_water,
+    hydrostatics,
     water_in,
 )
 from buoyancy_mj.kernels.waves import head, tabulate
@@ -519,3 +520,23 @@ def test_a_scene_says_which():
 def test_what_makes_no_sense_is_told(arguments, message):
     with pytest.raises(MethodError, match=message):
         Buoyancy(mujoco.MjModel.from_xml_string(MODEL), **arguments)
+
+
+@pytest.mark.parametrize("pressure", ["hydrostatic", "froude-krylov"])
+def test_a_long_wave_turns_a_box_of_twelve_triangles_with_its_slope(pressure):
+    # a triangle is half a side, and small beside the wave: its slope over it must not be lost
+    model = mujoco.MjModel.from_xml_string(
+        '<mujoco><worldbody><body name="raft" pos="0 0 0.05"><freejoint/>'
+        '<geom type="box" size="0.5 0.4 0.1" mass="40"/></body></worldbody></mujoco>'
+    )
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    stiffness = hydrostatics(model).stiffness
+    for direction, axis in ((0.0, 4), (math.pi / 2, 3)):
+        wave = RegularWave(0.01, period=12.0, direction=direction, phase=math.pi / 2)
+        water = Buoyancy(model, Water(waves=wave), pressure=pressure, damping=None)
+        slope = 0.01 * 2.0 * math.pi / wave.wavelength
+        torque = water.evaluate(data).total.torque
+        size = abs(torque[axis - 3])
+        assert size == pytest.approx(stiffness[axis, axis] * slope, rel=0.01)
+        assert abs(torque[4 - axis]) < 0.01 * size

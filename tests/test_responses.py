@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+import trimesh
 import xarray
 from typer.testing import CliRunner
 
@@ -19,6 +20,7 @@ from buoyancy_mj.responses.regular import Channels, choose_steps, measure_regula
 from buoyancy_mj.responses.responses import list_names
 from buoyancy_mj.responses.subject import prepare, read_subject
 from buoyancy_mj.responses.tracks import MOTIONS
+from tests import vessels
 
 RAFT = """<mujoco><worldbody><body name="raft"><freejoint/>
 <geom type="box" size="0.5 0.4 0.1" mass="40"/><site name="corner" pos="0.5 0.4 0.1"/></body>
@@ -139,6 +141,39 @@ def test_the_sphere_of_oes_task_10_heaves_as_five_codes_have_it_where_waves_are_
     for period, codes in published.items():
         low, high = min(codes), max(codes)
         assert 0.975 * low <= at(found, "heave", 180, period)[0] <= 1.025 * high
+
+
+@pytest.mark.long
+def test_the_float_of_rm3_heaves_as_potential_flow_has_it_where_waves_are_long(tmp_path):
+    capytaine = pytest.importorskip("capytaine")
+    airy_waves = pytest.importorskip("capytaine.bem.airy_waves")
+    solid, mass, centre = vessels.rm3_float(), 725_834.0, -0.72
+    trimesh.Trimesh(solid.vertices, solid.faces).export(tmp_path / "float.stl")
+    (tmp_path / "rm3.xml").write_text(
+        '<mujoco><asset><mesh name="float" file="float.stl" inertia="shell"/></asset>'
+        f'<worldbody><body name="float" pos="0 0 {centre}"><freejoint/>'
+        f'<inertial pos="0 0 0" mass="{mass}" diaginertia="20907301 21306091 37085481"/>'
+        '<geom type="mesh" mesh="float"/></body></worldbody></mujoco>'
+    )
+    periods = np.array([8.0, 10.0, 12.0])
+    found = respond(tmp_path / "rm3.xml", periods)
+
+    # the same mesh by boundary elements
+    mesh = capytaine.Mesh(solid.vertices, solid.faces).translated_z(centre)
+    middle = (0.0, 0.0, centre)
+    dofs = capytaine.rigid_body_dofs(rotation_center=middle)
+    body = capytaine.FloatingBody(mesh=mesh, dofs=dofs, center_of_mass=middle).immersed_part()
+    solver, stiffness = capytaine.BEMSolver(), 1000.0 * 9.81 * 284.763
+    for period, heave in zip(periods, found.find("heave")[0], strict=True):
+        omega = 2.0 * math.pi / period
+        radiation = capytaine.RadiationProblem(omega=omega, body=body, radiating_dof="Heave")
+        diffraction = capytaine.DiffractionProblem(omega=omega, body=body, wave_direction=math.pi)
+        radiated, scattered = solver.solve(radiation), solver.solve(diffraction)
+        force = scattered.forces["Heave"] + airy_waves.froude_krylov_force(diffraction)["Heave"]
+        inertia = mass + radiated.added_masses["Heave"]
+        damping = radiated.radiation_dampings["Heave"]
+        expected = force / (stiffness - omega**2 * inertia - 1j * omega * damping)
+        assert abs(heave - expected) < 0.04 * abs(expected), period
 
 
 def test_an_irregular_sea_gives_what_regular_waves_give_within_what_coherence_allows(raft):

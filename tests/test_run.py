@@ -133,6 +133,6 @@ def test_frames_are_due_at_the_record_rate_and_at_the_end(rate):
 def test_long_runs_keep_a_sum_for_each_part_and_no_poses():
     simulation = simulate("hourglass_drop_still", "duration=60")
     simulation.advance(5000)
-    tally = simulation._meters._meters["hourglass"]._tally
-    assert len(simulation._meters.tape._kept) + sum(map(len, tally._open)) < 3000
+    tally = simulation._witness.meters._meters["hourglass"]._tally
+    assert len(simulation._witness.meters.tape._kept) + sum(map(len, tally._open)) < 3000
     assert sum(len(parts.number) for parts in tally._parts) <= 25

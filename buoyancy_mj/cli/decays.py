@@ -13,12 +13,19 @@ from buoyancy_mj.cli.application import command
 from buoyancy_mj.cli.console import err, out
 from buoyancy_mj.cli.flags import Json, SceneFlags, SelectionFlags
 from buoyancy_mj.cli.response_flags import SubjectArgument, check_file, import_charts, tell_files
+from buoyancy_mj.errors import ResponseError
 from buoyancy_mj.files import replace_file
 from buoyancy_mj.responses.decay import RESTORED, Decay
 from buoyancy_mj.responses.decay import decay as measure
+from buoyancy_mj.values import read_number
 
 
-@command()
+@command(
+    examples=(
+        "decay oes_sphere --motion heave --from 1",
+        "decay catamaran --motion roll --from 10 --plot roll.png",
+    )
+)
 def decay(
     model: SubjectArgument,
     flags: SceneFlags,
@@ -44,16 +51,12 @@ def decay(
     """Let a vehicle go out of its rest, and fit period, damping and added mass.
 
     They are those of x'' + p1 x' + p2 |x'| x' + w^2 x = 0, beside the natural period of statics.
-    For example:
-
-    buoyancy-mj decay oes_sphere --motion heave --from 1
-
-    buoyancy-mj decay catamaran --motion roll --from 10 --plot roll.png
     """
     charts = None if plot is None else import_charts("--plot", plot, "decay_charts")
     check_file("--csv", csv, (".csv",))
-    if start is not None and motion != "heave":
-        start = math.radians(start)
+    if start is not None:
+        start = read_number(ResponseError, "--from", start)
+        start = start if motion == "heave" else math.radians(start)
     settings = (*flags.overrides(), *selection.overrides())
     with err.status("letting it go"):
         found = measure(model, motion, start, settings=settings, trust=flags.trust)

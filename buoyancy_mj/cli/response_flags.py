@@ -22,6 +22,7 @@ from buoyancy_mj.responses.tables import write_responses_csv
 from buoyancy_mj.sea.spectra import JonswapSea, PiersonMoskowitzSea
 from buoyancy_mj.settings.texts import parse_toml
 from buoyancy_mj.settings.toml import wave_from_table
+from buoyancy_mj.values import read_number
 
 SubjectArgument = Annotated[
     str,
@@ -39,7 +40,7 @@ class SeaFlags:
 
     sea: Annotated[str | None, typer.Option(metavar="'KIND KEY=VALUE ...'")] = None
     """Tell what the responses come to in a sea, as 'jonswap significant_height=1 peak_period=6'."""
-    hours: Annotated[float, typer.Option(min=0.01)] = HOURS_3 / 3600.0
+    hours: float = HOURS_3 / 3600.0
     """How long that sea lasts [h]."""
     irregular: Annotated[bool, typer.Option("--irregular")] = False
     """Measure in that sea, by cross-spectra with coherence."""
@@ -50,6 +51,7 @@ class SeaFlags:
         Raises:
             ResponseError: it is none, or it is missing.
         """
+        read_number(ResponseError, "--hours", self.hours, above=0.0)
         if self.sea is not None:
             sea = parse_sea(self.sea)
             check_sea(sea)

@@ -20,13 +20,20 @@ from buoyancy_mj.cli.response_flags import (
 from buoyancy_mj.cli.response_tables import list_tables
 from buoyancy_mj.cli.signals import raise_received
 from buoyancy_mj.cli.sweeps import MOST_THREADS
+from buoyancy_mj.errors import ResponseError
 from buoyancy_mj.responses.respond import respond as measure
 from buoyancy_mj.responses.responses import Responses
 from buoyancy_mj.responses.subject import read_subject
 from buoyancy_mj.responses.tables import to_values
+from buoyancy_mj.values import read_number
 
 
-@command()
+@command(
+    examples=(
+        "respond catamaran --periods 1:6:11 --heading 0:180:7",
+        "respond auv_sea_state_2 --periods 2,3,5 --csv raos.csv",
+    )
+)
 def respond(
     model: SubjectArgument,
     flags: SceneFlags,
@@ -67,14 +74,11 @@ def respond(
     """Measure response amplitude operators, by regular waves or in a sea.
 
     The vehicle is held softly at its place and heading. A model is put into fresh water with the
-    pressure of Froude and Krylov; a scene keeps its own water. For example:
-
-    buoyancy-mj respond catamaran --periods 1:6:11 --heading 0:180:7 --plot raos.png
-
-    buoyancy-mj respond catamaran --periods 2:5:7 --irregular
-    --sea "jonswap significant_height=0.3 peak_period=3"
+    pressure of Froude and Krylov; a scene keeps its own water.
     """
     waves, angles = parse_numbers("--periods", periods), parse_angles("--heading", heading)
+    if depth is not None:
+        depth = read_number(ResponseError, "--depth", depth, above=0.0)
     sea = in_sea.read()
     files.check()
     scene = read_subject(model, (*flags.overrides(), *selection.overrides()))

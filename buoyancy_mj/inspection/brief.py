@@ -27,7 +27,7 @@ def write_verdicts(inspection: Inspection) -> list[str]:
     for vessel in inspection.vessels:
         names = vessel.root_names
         who = names[0] if len(names) == 1 else f"{join_names(names)}, held together,"
-        verdicts.append(f"{who} {vessel.sentence}")
+        verdicts.append(f"{who}{':' if vessel.refused else ''} {vessel.sentence}")
     count = len(inspection.problems)
     if count:
         verdicts.append(f"{count} problem{'' if count == 1 else 's'}, told below")

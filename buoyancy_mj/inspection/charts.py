@@ -8,6 +8,7 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
 from numpy.typing import NDArray
 
 from buoyancy_mj.files import require_own
@@ -131,11 +132,13 @@ def _draw_righting(arm: RightingArm, at: Hydrostatics) -> Figure:
     )
 
     if math.isfinite(arm.vanishing):
-        _mark_heel(axes, arm.vanishing, "vanishing stability", color=VERMILLION, linestyle="--")
+        label = f"vanishing stability, {math.degrees(arm.vanishing):.1f}°"
+        _mark_heel(axes, arm.vanishing, label, color=VERMILLION, linestyle="--")
     immersed = {name: heel for name, heel in arm.immersed.items() if math.isfinite(heel)}
     for i, (name, heel) in enumerate(immersed.items()):
         _mark_heel(axes, heel, f"{name} under", color=f"C{2 + i % 4}", linestyle="-.")
 
+    axes.xaxis.set_major_locator(MultipleLocator(30.0))
     axes.set_xlabel("heel [degrees]")
     axes.set_ylabel("righting arm GZ [m]")
     axes.legend()

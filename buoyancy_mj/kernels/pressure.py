@@ -16,7 +16,7 @@ from buoyancy_mj.kernels.compiling import njit
 from buoyancy_mj.kernels.halving import CORNER, PART, split
 from buoyancy_mj.kernels.heads import HEAD, Sea, set_depths
 from buoyancy_mj.kernels.hulls import ALLOWED, WHOLE_HALF, WHOLE_MIDDLE
-from buoyancy_mj.kernels.quadrature import PLACES, TRIANGLE, add_wet_part, sum_points
+from buoyancy_mj.kernels.quadrature import PLACES, POINT, TRIANGLE, add_wet_part, sum_points
 from buoyancy_mj.kernels.rules import POINTS, let_node_wait
 from buoyancy_mj.kernels.sea import PressureModel
 from buoyancy_mj.kernels.surface import swing, tangent_at
@@ -26,6 +26,9 @@ from buoyancy_mj.kernels.waves import AMPLITUDE, KX, KY
 SMALL = 0.8
 """Half the diagonal of a node, times the typical wave number, for its rule: to 1.5e-4 of the
 amplitude in the mean, 1e-3 in corners."""
+COARSE = 0.1
+"""Longest edge of a triangle, over half the diagonal of its hull, for one point: the slope of the
+surface over it is left out of its torque."""
 DEPTHS = 16
 """Depths for which the typical wave number is known."""
 
@@ -105,6 +108,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
     tiles, store, time, dynamic = sea.tiles, sea.known_tiles, sea.time, sea.dynamic
     points, corners, sums = scratch.pressure.points, scratch.pressure.corners, scratch.pressure.sums
     stack, allowed = scratch.cut.stack, hulls.whole[h, ALLOWED]
+    w0, w1, w2 = triple(hulls.whole, h, WHOLE_HALF)
+    coarse = POINT / (COARSE * math.sqrt(w0 * w0 + w1 * w1 + w2 * w2))
     edges, most_bent = hulls.edges, 0.125 * curvature
     # int64: a literal 0 would have all that it is given to compiled twice
     count = int64(0)
@@ -151,7 +156,8 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 set_depths(sea, corners, last - first)
             rough = most_bent * edges[i] * edges[i] > allowed and not wet
 
-            # what is wet of each triangle
+            # what is wet of each triangle; one point is for those that are small beside the hull
+            fine = max(most, coarse)
             for f in range(spans[i, tree.FIRST_FACE], spans[i, tree.END_FACE]):
                 j, k, o = faces[f, 0] - first, faces[f, 1] - first, faces[f, 2] - first
                 dj, dk, do = corners[HEAD, j], corners[HEAD, k], corners[HEAD, o]
@@ -162,7 +168,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                 p, q, s = _corner(corners, j), _corner(corners, k), _corner(corners, o)
                 area = rotate(r, areas[f, 0], areas[f, 1], areas[f, 2])
                 if not rough:
-                    count = add_wet_part(points, count, p, q, s, dj, dk, do, area, most, sums)
+                    count = add_wet_part(points, count, p, q, s, dj, dk, do, area, fine, sums)
                     continue
 
                 # halved where the surface bends along its edges
@@ -189,7 +195,7 @@ def _walk(  # noqa: C901 (a call for each node would cost more than what it does
                             _corner_of(stack, top, 2),
                         )
                         part = scale(stack[top, PART], area)
-                        count = add_wet_part(points, count, p, q, s, dj, dk, do, part, most, sums)
+                        count = add_wet_part(points, count, p, q, s, dj, dk, do, part, fine, sums)
                     top -= 1
         i = tree.node_after(spans, i, dry or small)
     sum_points(sea, points, count, origin, sums)

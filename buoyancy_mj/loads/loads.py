@@ -51,3 +51,9 @@ class Loads:
     def xfrc(self) -> NDArray[np.float64]:
         """The sum of all causes (nbody, 6), in the layout of MuJoCo's xfrc_applied."""
         return np.hstack([self.body.force, self.body.torque])
+
+    def _repr_html_(self) -> str:
+        """How a notebook shows them."""
+        from buoyancy_mj.loads.portrait import portray
+
+        return portray(self)

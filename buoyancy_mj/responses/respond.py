@@ -1,5 +1,6 @@
 """`respond`: response amplitude operators of a vehicle, by regular waves or in an irregular sea."""
 
+import contextlib
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -89,6 +90,8 @@ def respond(
             f"that would be {len(waves) * len(angles)} runs; there may be {MOST_RUNS} at most, so "
             "give fewer periods or headings"
         )
+    if amplitude is not None:
+        amplitude = read_number(ResponseError, "amplitude", amplitude, above=0.0)
     if sea is not None:
         check_sea(sea)
 
@@ -163,10 +166,10 @@ def _measure(
     ahead = first.at_start.heading
     if sea is not None:
         coherence = np.zeros(shape)
-        jobs = plan.irregular_jobs(ahead, sea)
-        for row, in_sea in enumerate(run_side_by_side(jobs, threads)):
-            transfer[row], coherence[row], sure[row], turned[row] = in_sea
-            each()
+        with contextlib.closing(run_side_by_side(plan.irregular_jobs(ahead, sea), threads)) as done:
+            for row, in_sea in enumerate(done):
+                transfer[row], coherence[row], sure[row], turned[row] = in_sea
+                each()
         return {
             "transfer": transfer,
             "sure": sure,
@@ -174,11 +177,12 @@ def _measure(
             "cycles": cycles,
             "turned": turned,
         }
-    for row, in_wave in enumerate(run_side_by_side(plan.regular_jobs(ahead), threads)):
-        at = divmod(row, len(plan.periods))
-        transfer[at], sure[at], cycles[at] = in_wave.transfer, in_wave.settled, in_wave.periods
-        turned[at] = in_wave.turned
-        each()
+    with contextlib.closing(run_side_by_side(plan.regular_jobs(ahead), threads)) as done:
+        for row, in_wave in enumerate(done):
+            at = divmod(row, len(plan.periods))
+            transfer[at], sure[at], cycles[at] = in_wave.transfer, in_wave.settled, in_wave.periods
+            turned[at] = in_wave.turned
+            each()
     return {
         "transfer": transfer,
         "sure": sure,
@@ -202,8 +206,7 @@ def _choose_amplitudes(
 ) -> NDArray[np.float64]:
     """Amplitudes of the waves (p,) [m]."""
     if amplitude is not None:
-        chosen = read_number(ResponseError, "amplitude", amplitude, above=0.0)
-        return np.full(len(wavenumbers), chosen)
+        return np.full(len(wavenumbers), amplitude)
     at = first.at_start
     tall = at.draft if at.waterplane_area > 0.0 else first.simulation.vehicle.length
     return np.minimum(PART_OF_DRAFT * tall, STEEPNESS * math.pi / wavenumbers)

@@ -3,7 +3,7 @@
 import concurrent.futures
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable
 from typing import TypeVar
 
 T = TypeVar("T")
@@ -14,21 +14,17 @@ Job = Callable[[threading.Event], T]
 """A job; it ends soon after the event is set."""
 
 
-def run_side_by_side(jobs: Iterable[Job[T]], threads: int = 0) -> Iterator[T]:
+def run_side_by_side(jobs: Iterable[Job[T]], threads: int = 0) -> Generator[T]:
     """Run jobs, and yield what each returns, in their order.
 
-    Jobs are made in the calling thread, a few ahead. Whatever ends the iteration early, Ctrl-C
-    among it, ends the jobs that run.
+    Jobs are made in the calling thread, a few ahead. Closing the generator before its end, as
+    `contextlib.closing` does whatever happens, ends the jobs that run.
 
     Args:
         jobs: what to run.
         threads: how many at once; 0 for one per core.
     """
-    workers = (
-        threads or len(os.sched_getaffinity(0))
-        if hasattr(os, "sched_getaffinity")
-        else (threads or os.cpu_count() or 1)
-    )
+    workers = threads or os.cpu_count() or 1
     stop = threading.Event()
     waiting: list[concurrent.futures.Future[T]] = []
     with concurrent.futures.ThreadPoolExecutor(workers) as pool:

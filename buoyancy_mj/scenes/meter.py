@@ -115,7 +115,7 @@ class Meter:
             deck_wetness=float(told.mean[_WET]),
             peak_acceleration=peaks[0],
             peak_load=peaks[1],
-            load_factor=peaks[1] / weight if weight else math.nan,
+            load_factor=peaks[1] / weight,
             slams=self._slams,
         )
 

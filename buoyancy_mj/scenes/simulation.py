@@ -1,10 +1,11 @@
 """`Simulation`: run a scene frame by frame."""
 
 import functools
-import math
+import importlib
 import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
+from typing import Any
 
 import mujoco
 import numpy as np
@@ -21,19 +22,17 @@ from buoyancy_mj.hulls.hull import Hull
 from buoyancy_mj.hulls.names import body_name
 from buoyancy_mj.records import ReadOnly
 from buoyancy_mj.scenes.assembly import assemble
-from buoyancy_mj.scenes.divergence import Limits
 from buoyancy_mj.scenes.fleet import Vehicle, build_vehicles
 from buoyancy_mj.scenes.frame_source import FrameSource
 from buoyancy_mj.scenes.frames import Frame, take_only
-from buoyancy_mj.scenes.lookout import Lookout
-from buoyancy_mj.scenes.meters import Meters
 from buoyancy_mj.scenes.natural_periods import Periods, find_natural_periods
 from buoyancy_mj.scenes.obstacles import warn_of_obstacles
 from buoyancy_mj.scenes.scene import Scene
 from buoyancy_mj.scenes.steering import Steering
 from buoyancy_mj.scenes.summary import Summary
 from buoyancy_mj.scenes.tape import LENGTH
-from buoyancy_mj.scenes.trajectory import Poses, Trajectory, poses_of
+from buoyancy_mj.scenes.trajectory import Trajectory
+from buoyancy_mj.scenes.witness import Witness
 from buoyancy_mj.vehicle.control.controller import Controller
 
 BLOCK_TIME = 0.1
@@ -96,21 +95,16 @@ class Simulation(ReadOnly):
         with raise_causes():
             mujoco.mj_fwdPosition(self.model, start)
         warn_of_obstacles(self.model, start, self.vehicles, scene.water.level)
-        self._limits = Limits(scene, self.model, start)
-        self._lookout = Lookout(self.data, self._limits, self._source.monitors.values())
-        self._meters = Meters(
+        self._witness = Witness(
+            scene,
             self.model,
-            start,
             self.data,
-            {
-                name: (self.vehicles[name], one.corners)
-                for name, one in self._source.monitors.items()
-            },
-            self.buoyancy.water,
-            scene.duration,
+            start,
+            self.vehicles,
+            self._source.monitors,
+            self.buoyancy,
             measure,
         )
-        self._present: Poses | None = poses_of(start)
         self._wall_time = 0.0
 
         # who watches
@@ -179,7 +173,7 @@ class Simulation(ReadOnly):
     @property
     def measures_sensors(self) -> bool:
         """Whether the summary tells of sensors."""
-        return self._meters.with_sensors
+        return self._witness.meters.with_sensors
 
     def frames(self) -> Iterator[Frame]:
         """Run the scene; a frame at time 0, then at the record rate, and one at the end.
@@ -222,9 +216,26 @@ class Simulation(ReadOnly):
             # twice as many until they take long enough
             count = int(count * min(2.0, BLOCK_TIME / (time.perf_counter() - begun)))
         self._source.see(self.data, self._forward)
-        self._present = poses_of(self._source.data)
+        self._witness.take_present(self._source.data)
         self._wall_time = time.perf_counter() - started
         return self.summary()
+
+    def show(self) -> Any:
+        """Run the scene to its end, and show it in a notebook.
+
+        Returns:
+            Rerun's viewer with the recording, where `pip install 'buoyancy_mj[notebook]'` has put
+            it; else the summary, with charts of the motion. As the last word of a cell it is shown.
+
+        Raises:
+            SceneError: the scene has run already.
+            DivergenceError: as `frames`.
+
+        Example:
+            `Simulation(read_scene(path)).show()`
+        """
+        # a room downstream draws, and is imported when somebody looks
+        return importlib.import_module("buoyancy_mj.viz.notebook").show_run(self)
 
     def step(self) -> None:
         """Take one timestep with the water acting, steered by the controllers that are due.
@@ -263,18 +274,12 @@ class Simulation(ReadOnly):
     def _step_natively(self, count: int) -> None:
         """Take timesteps with the water acting, and see what each leaves."""
         model, data, step = self.model, self.data, mujoco.mj_step
-        look, tape = self._lookout.look, self._meters.tape
-        take, keep = tape.take, tape.keep
-        self._lookout.reserve(count)
-        tape.wind(data.time)
-        self._present = None
+        see = self._witness.begin(count)
         with self._lend_water(), raise_causes():
             for _ in range(count):
                 before = data.time
                 step(model, data)
-                # a step leaves the poses of its beginning
-                look(before, data.time)
-                keep(take())
+                see(before, data.time)
 
     def replay(self, trajectory: Trajectory, wall_time: float) -> None:
         """Take over a whole run that was stepped elsewhere, for the summary.
@@ -286,28 +291,7 @@ class Simulation(ReadOnly):
         Raises:
             DivergenceError: a body has left all reason.
         """
-        timestep = self.model.opt.timestep
-
-        # each step; contacts are found anew, from the coordinates at its beginning
-        self._limits.check_trajectory(trajectory, timestep)
-        for monitor in self._source.monitors.values():
-            monitor.add_trajectory(trajectory, timestep)
-        self._meters.add_trajectory(trajectory)
-        starts = np.vstack([self.data.qpos[None], trajectory.qpos])
-        for step in np.flatnonzero(trajectory.ncon):
-            self._source.data.qpos[:] = starts[step]
-            mujoco.mj_fwdPosition(self.model, self._source.data)
-            for monitor in self._source.monitors.values():
-                monitor.add_contacts(self._source.data, float(step + 1) * timestep)
-
-        # the end
-        self.data.qpos[:] = trajectory.qpos[-1]
-        self.data.time = len(trajectory.qpos) * timestep
-        mujoco.mj_fwdPosition(self.model, self.data)
-        poses = self._present = poses_of(self.data)
-        self._limits.check_poses(poses, float(self.data.time))
-        for monitor in self._source.monitors.values():
-            monitor.add_poses(poses, float(self.data.time))
+        self._witness.replay(trajectory, self._source.data)
         self._wall_time = wall_time
 
     def frame(self) -> Frame:
@@ -318,7 +302,7 @@ class Simulation(ReadOnly):
                 reason: see `Limits`.
         """
         frame = self._source.take(self.data, self._forward)
-        self._present = poses_of(self._source.data)
+        self._witness.take_present(self._source.data)
         return frame
 
     def summary(self, *, with_periods: bool = False) -> Summary:
@@ -328,28 +312,9 @@ class Simulation(ReadOnly):
             with_periods: whether to find the natural periods of the vehicles too, from their
                 statics, which takes some milliseconds for each.
         """
-        now = float(self.data.time)
-        monitors = self._source.monitors
-        if self._present is None:
-            # the draft in the poses that the last step left
-            for monitor in monitors.values():
-                monitor.add_poses(poses_of(self.data), now - self.model.opt.timestep)
-        measured, heights = self._meters.measure(now, self._present), self._meters.heights
         at_limits = {} if self._steering is None else self._steering.at_limits
-        return Summary(
-            scene=self.scene.title,
-            method=self.scene.method.name,
-            sea=self._meters.sea,
-            vehicles={
-                name: monitor.summary(heights[name], measured[name], at_limits.get(name))
-                for name, monitor in monitors.items()
-            },
-            simulated_time=now,
-            wall_time=self._wall_time,
-            real_time_factor=now / self._wall_time if self._wall_time else math.nan,
-            sensors=self._meters.measure_sensors(now),
-            natural_periods=self._natural_periods if with_periods else {},
-        )
+        periods = self._natural_periods if with_periods else {}
+        return self._witness.sum_up(self._wall_time, at_limits, periods)
 
     @functools.cached_property
     def _natural_periods(self) -> dict[str, Periods]:
@@ -388,4 +353,4 @@ class Simulation(ReadOnly):
             mujoco.mj_forward(self.model, data)
         mujoco.mj_energyPos(self.model, data)
         mujoco.mj_energyVel(self.model, data)
-        self._limits.check_data(data, float(data.time))
+        self._witness.limits.check_data(data, float(data.time))

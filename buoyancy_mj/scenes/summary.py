@@ -131,6 +131,12 @@ class Summary:
         """The numbers of `rows` alone, without what they are compared with."""
         return summary_rows.list_numbers(self)
 
+    def _repr_html_(self) -> str:
+        """How a notebook shows it."""
+        from buoyancy_mj.scenes.portrait import portray
+
+        return portray(self)
+
     @property
     def caption(self) -> str:
         """What holds for the whole run, in a line or two."""

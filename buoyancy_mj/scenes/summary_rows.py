@@ -52,7 +52,7 @@ def write_caption(summary: "Summary") -> str:
         f"{_describe_sea(summary.sea)}; {window.name}: {window.text}",
         *(f"{name}: {value}" for name, value in _list_sensors(summary)),
     ]
-    return "\n".join(sentences)
+    return ";\n".join(sentences)
 
 
 def _list_numbers(one: "VehicleSummary") -> _Pairs:

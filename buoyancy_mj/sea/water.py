@@ -81,6 +81,12 @@ class Water:
                 "so leave out the smallest"
             )
 
+    def _repr_html_(self) -> str:
+        """How a notebook shows it."""
+        from buoyancy_mj.sea.portrait import portray
+
+        return portray(self)
+
     @property
     def _waves(self) -> tuple[Wave, ...]:
         """The waves, which are a tuple once the water exists."""

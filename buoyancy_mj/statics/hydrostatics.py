@@ -84,6 +84,12 @@ class Hydrostatics:
     stiffness: NDArray[np.float64]
     """Hydrostatic stiffness about the centre of gravity (6, 6) [N/m, N, N m]."""
 
+    def _repr_html_(self) -> str:
+        """How a notebook shows them."""
+        from buoyancy_mj.statics.portrait import portray
+
+        return portray(self)
+
     @property
     def displacement(self) -> float:
         """Mass of the water displaced [kg]."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 
 from buoyancy_mj.paper.figures.axes import COLOURS, finish, new_figure, numbers
 from buoyancy_mj.paper.study import Result
@@ -59,5 +60,10 @@ def draw_density(result: Result) -> Figure:
                 error = np.maximum(np.abs(numbers(table, f"{name}, error [%]"))[rows], _LEAST)
                 axes.loglog(vertices, error, "o-", ms=4, color=colour, label=name)
         axes.set(title=body, xlabel="vertices", ylabel="size of the error [%]", ylim=_LIMITS)
+        # three numbers that stand apart, over however little of a decade
+        low, high = axes.get_xlim()
+        axes.xaxis.set_major_locator(FixedLocator(np.geomspace(1.2 * low, high / 1.2, 3).tolist()))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
     finish(*all_axes)
     return figure

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from buoyancy_mj.paper.figures.axes import COLOURS, finish, new_figure, numbers
 from buoyancy_mj.paper.study import Result
-from buoyancy_mj.plotting.style import SKY
+from buoyancy_mj.plotting.style import INK, SKY
 
 
 def draw_cog(result: Result) -> Figure:
@@ -73,10 +73,13 @@ def _draw_grid(
     rows = np.unique(masses)
     columns = np.unique(rates)
     grid = swings.reshape(len(rows), len(columns))
-    axes.imshow(grid, cmap="RdYlGn_r", vmin=0.0, vmax=0.3, origin="lower", aspect="auto")
+    # light is small, so that letters on it are dark
+    axes.grid(visible=False)
+    axes.imshow(grid, cmap="cividis_r", vmin=0.0, vmax=0.3, origin="lower", aspect="auto")
     style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 8}
     for (i, j), value in np.ndenumerate(grid):
         weight = "bold" if value < 0.05 else "normal"
-        axes.text(j, i, f"{value:.2f}", weight=weight, **style)
+        colour = INK if value < 0.15 else "white"
+        axes.text(j, i, f"{value:.2f}", weight=weight, color=colour, **style)
     axes.set_xticks(range(len(columns)), [f"{rate:g}" for rate in columns])
     axes.set_yticks(range(len(rows)), [f"{mass:g}" for mass in rows])
