@@ -29,10 +29,12 @@ BEARINGS = np.radians([-70.0, 70.0, -110.0, 110.0, -20.0, 160.0])
 From the side, since vehicles go ahead: a wall that they come to stays out of the way."""
 LAG = np.array([0.4, 0.4, 3.0])
 """Times by which the eye follows late [s], along x, y and z: heave shows against the horizon."""
-FLAT = 5.0
-"""Least distance of the eye over the height of crests."""
+STEEPEST = math.radians(21.0)
+"""Most of that angle; where waves are high the eye goes farther away."""
 WIDE = 60.0
 """Least distance of the horizon over that of the eye."""
+SINK = 0.7
+"""How far vehicles sink under the middle of the picture, over their reach, before the eye does."""
 SLACK = 0.4
 """Most that it lags behind, over the reach of the vehicles."""
 
@@ -67,11 +69,10 @@ class Eye:
         self.crest = measure_crest(water)
         """How high crests are, but for rare ones [m]."""
 
-        # no crest between
-        self.distance = max(self.distance, FLAT * self.crest)
-
         # the side, whence nothing hides the vehicles
         rise = self._find_rise(up)
+        # waves are not looked at from far above, so that the horizon stays in the picture
+        self.distance = max(self.distance, rise / math.sin(STEEPEST))
         flat = math.sqrt(max(self.distance**2 - rise**2, 0.0))
         headings = subject.heading + BEARINGS
         offsets = np.column_stack(
@@ -89,6 +90,11 @@ class Eye:
         self._time: float | None = None
         self._step, self._left = 0.0, np.ones(3)
         self._slack = SLACK * min(along, up)
+        self._room = SINK * up
+        is_above = self.position[2] > self.level
+        self._lowest = (
+            self.level + self._clear(up) - float(self.offset[2]) if is_above else -math.inf
+        )
         self._alone = 0.5 * max(vehicle.length for vehicle in run.vehicles.values())
 
     @property
@@ -147,18 +153,24 @@ class Eye:
                 self._left = np.exp(-self._step / LAG)
             behind = (self.middle - middle) * self._left
             far = math.sqrt(behind @ behind)
-            middle = middle + behind * min(1.0, self._slack / max(far, 1e-9))
+            late = middle + behind * min(1.0, self._slack / max(far, 1e-9))
+            # over the waves while the vehicle is still in the picture, and then down after it
+            late[2] = max(late[2], min(self._lowest, middle[2] + self._room))
+            middle = late
         self.middle, self._time = middle, time
+
+    def _clear(self, up: float) -> float:
+        """How far from still water the eye is, so that waves pass it [m]."""
+        return 1.5 * self.crest + 0.2 * up
 
     def _find_rise(self, up: float) -> float:
         """How much higher than what it looks at the eye stands [m], clear of the surface."""
-        clear = 1.2 * self.crest + 0.2 * up
+        clear = self._clear(up)
         # what is dropped comes down
         depth = max(self.level - float(self.middle[2]), 0.0)
         if depth > 1.2 * up + self.crest:
             return min(self.distance * math.sin(PITCH[1]), depth - clear)
-        rise = max(self.distance * math.sin(PITCH[0]), depth + clear)
-        return min(rise, 0.8 * self.distance)
+        return max(self.distance * math.sin(PITCH[0]), depth + clear)
 
 
 def find_distance(along: float, up: float) -> float:
