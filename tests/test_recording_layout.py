@@ -5,6 +5,7 @@ import re
 
 import numpy as np
 import pytest
+import scipy.signal
 from hypothesis import given
 from hypothesis import strategies as st
 from rerun.chunk import RrdReader
@@ -83,6 +84,18 @@ def test_the_spectrum_of_a_wave_has_its_variance_at_its_frequency():
     frequencies, densities = estimate_spectra(times, series[:, None])
     assert frequencies[np.argmax(densities)] == pytest.approx(0.5, abs=frequencies[1])
     assert densities.sum() * frequencies[1] == pytest.approx(0.5 * 0.3**2, rel=0.02)
+
+
+@pytest.mark.parametrize("length", [100, 101, 3001, 3002])
+def test_spectra_are_those_of_scipy(length):
+    times = np.arange(length) / 60.0
+    random = np.random.default_rng(length)
+    series = np.sin(9.0 * times)[:, None] + random.normal(size=(length, 2)) + 0.1 * times[:, None]
+    window = length if times[-1] * 9.0 / (2.0 * np.pi) < 64.0 else 2 * length // 5
+    expected = scipy.signal.welch(series, 60.0, nperseg=window, detrend="linear", axis=0)
+    frequencies, densities = estimate_spectra(times, series)
+    assert frequencies == pytest.approx(expected[0])
+    assert densities == pytest.approx(expected[1], rel=1e-9, abs=1e-12)
 
 
 # what is in the file

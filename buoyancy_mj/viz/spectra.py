@@ -32,9 +32,8 @@ SHOWN, AXIS = 0.99, 680.0
 class Spectra:
     """One-sided spectral densities of the elevation at each vehicle, and of its motion.
 
-    Welch (1967), "The use of fast Fourier transform for the estimation of power spectra", as
-    `scipy.signal.welch` has it: windows of Hann, whose trend is taken off. A short run is one
-    window.
+    Welch (1967), "The use of fast Fourier transform for the estimation of power spectra": windows
+    of Hann, whose trend is taken off. A short run is one window.
 
     Args:
         vehicles: each vehicle, and what tells it from others.
@@ -94,7 +93,7 @@ class Spectra:
 def estimate_spectra(
     times: NDArray[np.float64], series: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Estimate one-sided spectral densities of series whose trends are taken off.
+    """Estimate one-sided spectral densities of series, whose trends are taken off.
 
     Args:
         times: evenly spaced times (n,) [s].
@@ -104,16 +103,39 @@ def estimate_spectra(
         Frequencies (m,) [Hz], and densities (m, ...) [unit^2/Hz] whose integral over frequency is
         the variance.
     """
-    from scipy.signal import welch  # takes time to import
-
-    rate = 1.0 / (times[1] - times[0])
-    window = len(times)
-    frequencies, densities = welch(series, rate, nperseg=window, detrend="linear", axis=0)
+    frequencies, densities = _average(times, series, len(times))
     peak = frequencies[np.argmax(densities.reshape(len(frequencies), -1).max(axis=1))]
     if peak * (times[-1] - times[0]) > LONG:
-        window = 2 * len(times) // (SEGMENTS + 1)
-        frequencies, densities = welch(series, rate, nperseg=window, detrend="linear", axis=0)
+        return _average(times, series, 2 * len(times) // (SEGMENTS + 1))
     return frequencies, densities
+
+
+def _average(
+    times: NDArray[np.float64], series: NDArray[np.float64], length: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Average spectra over windows of a length, each of which begins amid the one before.
+
+    As `scipy.signal.welch` has them, whose import takes longer than to record ten seconds.
+    """
+    step = length - length // 2
+    begins = range(0, len(times) - length + 1, step)
+    windows = np.stack([series[begin : begin + length] for begin in begins])
+
+    # the trend of each
+    at = np.arange(length) - 0.5 * (length - 1)
+    slopes = np.tensordot(at, windows, (0, 1)) / (at @ at)
+    trends = at.reshape(-1, *[1] * (series.ndim - 1)) * slopes[:, None]
+    flat = windows - windows.mean(axis=1, keepdims=True) - trends
+
+    # Hann's window
+    shape = 0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length)
+    between = times[1] - times[0]
+    lines = np.fft.rfft(flat * shape.reshape(-1, *[1] * (series.ndim - 1)), axis=1)
+    densities = 2.0 * between / (shape @ shape) * (np.abs(lines) ** 2).mean(axis=0)
+    densities[0] *= 0.5
+    if length % 2 == 0:
+        densities[-1] *= 0.5
+    return np.fft.rfftfreq(length, between), densities
 
 
 def _count_shown(frequencies: NDArray[np.float64], densities: NDArray[np.float64]) -> int:
