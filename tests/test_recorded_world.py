@@ -85,10 +85,11 @@ def test_the_vehicle_is_whole_in_the_picture_and_fills_a_good_part_of_it_at_ever
         assert (np.abs(places) < 0.95).all()
         assert np.ptp(places[:, 1]) > 0.35
     assert surroundings.eye.is_below == (depth > 1.0)
-    # the view tracks a point that is where the eye looks
+    # the view is that of a camera there
     (_, last), *_ = reversed(log.of(eyes.ENTITY, "translation"))
-    assert last[0] == pytest.approx(surroundings.eye.middle)
-    assert np.linalg.norm(last[0] - frame.centre_of_mass) < 0.25 * simulation.vehicle.length
+    assert last[0] == pytest.approx(surroundings.eye.position)
+    aim = last[0] - surroundings.eye.offset
+    assert np.linalg.norm(aim - frame.centre_of_mass) < 0.25 * simulation.vehicle.length
 
 
 def test_the_picture_follows_a_vehicle_that_moves_and_the_world_does_not():

@@ -15,7 +15,7 @@ from buoyancy_mj.sea.water import Water
 from buoyancy_mj.viz.log import Log
 
 ENTITY = "world/eye"
-"""The entity that the view follows: a point amid the vehicle, or the eye itself."""
+"""The entity that the view follows: a camera."""
 FOVY = math.radians(55.0)
 """Angle that the viewer's eye takes from top to bottom [rad]."""
 ASPECT = 1.4
@@ -42,8 +42,9 @@ SLACK = 0.4
 class Eye:
     """The eye of a recording's view of the world.
 
-    One vehicle is tracked: who drags in the viewer turns about it while it goes on. Several are
-    seen by a camera that draws back as they part, so that all stay in the picture.
+    A camera goes along with the vehicle. It draws back as several of them part, so that all stay in
+    the picture. (Rerun's own eye could track the vehicle itself, and one could turn about it as it
+    goes on. But in a browser it is often put far outside of the world at first.)
 
     Args:
         run: the run.
@@ -54,8 +55,7 @@ class Eye:
         water = run.buoyancy.water
         subject = Subject(run.model, run.vehicles.values(), start)
         along, up = subject.measure(start)
-        self.several = subject.count > 1
-        """Whether there are several vehicles."""
+        self._several = subject.count > 1
         self.middle = subject.locate(start)
         """What it looks at (3,) [m]."""
         self.reach = max(along, up)
@@ -84,7 +84,7 @@ class Eye:
         free = np.linalg.norm(seen - self.middle, axis=1)
         best = int(np.argmax(np.round(free / self.distance, 3)))
         self._away = offsets[best] / np.linalg.norm(offsets[best])
-        if not self.several:
+        if not self._several:
             self.distance = float(free[best])
         self._turn = _look_along(-self._away)
         self._time: float | None = None
@@ -114,10 +114,7 @@ class Eye:
         return bool(self.position[2] < self.level)
 
     def draw_static(self, log: Log) -> None:
-        """Draw what is tracked, which nobody sees."""
-        if not self.several:
-            log.keep(ENTITY, rr.Points3D([[0.0, 0.0, 0.0]], radii=[0.0]))
-            return
+        """Draw the camera, which nobody sees."""
         camera = rr.Pinhole(
             fov_y=FOVY, aspect_ratio=ASPECT, image_plane_distance=1e-3 * self.distance
         )
@@ -131,16 +128,13 @@ class Eye:
             centres: their centres of mass (n, 3) [m].
             time: [s].
         """
-        if not self.several:
-            self._follow(centres[0], time)
-            log.draw(ENTITY, rr.Transform3D, translation=self.middle[None])
-            return
         low, high = centres.min(axis=0), centres.max(axis=0)
         self._follow(0.5 * (low + high), time)
-        # as far as it takes, and no nearer again
-        half = 0.5 * (high - low)
-        along = math.hypot(half[0], half[1]) + self._alone
-        self.distance = max(self.distance, find_distance(along, half[2] + self._alone))
+        if self._several:
+            # as far as it takes, and no nearer again
+            half = 0.5 * (high - low)
+            along = math.hypot(half[0], half[1]) + self._alone
+            self.distance = max(self.distance, find_distance(along, half[2] + self._alone))
         log.draw(
             ENTITY, rr.Transform3D, translation=self.position[None], quaternion=self._turn[None]
         )
