@@ -143,20 +143,39 @@ def test_the_sphere_of_oes_task_10_heaves_as_five_codes_have_it_where_waves_are_
         assert 0.975 * low <= at(found, "heave", 180, period)[0] <= 1.025 * high
 
 
+RM3_MASS, RM3_CENTRE = 725_834.0, -0.72
+
+
+def write_rm3_float(folder):
+    """The float of RM3 as a model, and its mesh."""
+    solid = vessels.rm3_float()
+    trimesh.Trimesh(solid.vertices, solid.faces).export(folder / "float.stl")
+    (folder / "rm3.xml").write_text(
+        '<mujoco><asset><mesh name="float" file="float.stl" inertia="shell"/></asset>'
+        f'<worldbody><body name="float" pos="0 0 {RM3_CENTRE}"><freejoint/>'
+        f'<inertial pos="0 0 0" mass="{RM3_MASS}" diaginertia="20907301 21306091 37085481"/>'
+        '<geom type="mesh" mesh="float"/></body></worldbody></mujoco>'
+    )
+    return folder / "rm3.xml", solid
+
+
+def test_the_float_of_rm3_heaves_as_wamit_has_it_where_waves_are_long(tmp_path):
+    path, _ = write_rm3_float(tmp_path)
+    # |X3 / (C33 - w^2 (m + A33) - i w B33)| of A33, B33 and X3 in WEC-Sim's examples/RM3/hydroData/
+    # rm3.out (WAMIT 7.2 by NREL), with C33 of the waterplane of 285.52 m^2 that it states
+    published = {8.055: 0.9876, 12.083: 1.0146}
+    found = np.abs(respond(path, list(published)).find("heave")[0])
+    assert found == pytest.approx(list(published.values()), rel=0.02)
+
+
 @pytest.mark.long
 def test_the_float_of_rm3_heaves_as_potential_flow_has_it_where_waves_are_long(tmp_path):
     capytaine = pytest.importorskip("capytaine")
     airy_waves = pytest.importorskip("capytaine.bem.airy_waves")
-    solid, mass, centre = vessels.rm3_float(), 725_834.0, -0.72
-    trimesh.Trimesh(solid.vertices, solid.faces).export(tmp_path / "float.stl")
-    (tmp_path / "rm3.xml").write_text(
-        '<mujoco><asset><mesh name="float" file="float.stl" inertia="shell"/></asset>'
-        f'<worldbody><body name="float" pos="0 0 {centre}"><freejoint/>'
-        f'<inertial pos="0 0 0" mass="{mass}" diaginertia="20907301 21306091 37085481"/>'
-        '<geom type="mesh" mesh="float"/></body></worldbody></mujoco>'
-    )
+    path, solid = write_rm3_float(tmp_path)
+    mass, centre = RM3_MASS, RM3_CENTRE
     periods = np.array([8.0, 10.0, 12.0])
-    found = respond(tmp_path / "rm3.xml", periods)
+    found = respond(path, periods)
 
     # the same mesh by boundary elements
     mesh = capytaine.Mesh(solid.vertices, solid.faces).translated_z(centre)
