@@ -155,4 +155,6 @@ def __dir__() -> list[str]:
 
 # MuJoCo knows the plugins of models from now on; a command of ours imports them when it begins
 if not _launch.IS_COMMAND_LINE:
+    # MuJoCo first: it asks for the plugins itself, of a module that has to be whole by then
+    _importlib.import_module("mujoco")
     _importlib.import_module("buoyancy_mj.engine.announcing").announce()

@@ -1,8 +1,6 @@
 """How is a loop of your own recorded, as pictures and as a table?"""
 
 import csv
-import tempfile
-from pathlib import Path
 
 import mujoco
 
@@ -15,15 +13,12 @@ add_water(spec, Water(waves=RegularWave(amplitude=0.1, period=3.0)), added_mass=
 model = spec.compile()
 data = mujoco.MjData(model)
 
-folder = Path(tempfile.mkdtemp())
-with Recorder(
-    model, data, folder / "float.rrd", rate=30.0, series=folder / "float.csv"
-) as recorder:
+with Recorder(model, data, "float.rrd", rate=30.0, series="float.csv") as recorder:
     while data.time < 3.0:
         mujoco.mj_step(model, data)
         recorder.record()
 
-with open(folder / "float.csv") as file:
+with open("float.csv") as file:
     heights = [float(row["float.position.z [m]"]) for row in csv.DictReader(file)]
 print(f"{len(heights)} frames; heave from {min(heights):.2f} to {max(heights):.2f} m")
-print("files:", *sorted(path.name for path in folder.iterdir()))
+print("here:", *recorder.paths)

@@ -19,8 +19,9 @@ spec = mujoco.MjSpec.from_string("""<mujoco><worldbody>
 def tell(when):
     """Print the reserve of buoyancy, and how far its centre is from that of gravity."""
     now = hydrostatics(spec.compile(), SEA)
-    along, _, up = 1e3 * abs(now.centre_of_buoyancy - now.centre_of_gravity)
-    print(f"{when}: {now.reserve:.2f} kg of reserve, B {along:.1f} mm from G along, {up:.1f} mm up")
+    along, _, up = 1e3 * (now.centre_of_buoyancy - now.centre_of_gravity)
+    apart = f"B {abs(along):.1f} mm from G along, {up:.1f} mm above it"
+    print(f"{when}: {now.reserve:.2f} kg of reserve, {apart}")
 
 
 tell("before")

@@ -10,6 +10,7 @@ import argparse
 import re
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -23,9 +24,13 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(EXAMPLES)}")
     for name in parser.parse_args().names or EXAMPLES:
         command = [sys.executable, str(EXAMPLES[name])]
-        printed = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+        # what an example leaves goes with the folder
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run(
+                command, check=True, stdout=subprocess.PIPE, text=True, cwd=folder
+            )
         page = recipe(name)
-        page.write_text(write_blocks(page.read_text(), name, printed))
+        page.write_text(write_blocks(page.read_text(), name, done.stdout))
         print(page.relative_to(ROOT))
 
 

@@ -130,3 +130,32 @@ def test_a_wrong_flag_is_one_sentence(words, said):
     done = CliRunner().invoke(app, ["decay", "oes_sphere", *words])
     assert done.exit_code == 1
     assert said in done.stderr.replace("\n", " ")
+
+
+@pytest.mark.parametrize(
+    ("start", "message"),
+    [
+        (200.0, "the start of the roll is 200 degrees; it must be less than half a turn"),
+        (150.0, "the roll came to an end 180 degrees away from its rest; let it go from nearer"),
+    ],
+)
+def test_a_vehicle_that_turns_over_has_no_decay(tmp_path, start, message):
+    path = tmp_path / "box.xml"
+    path.write_text(
+        '<mujoco><worldbody><body name="box"><freejoint/>'
+        '<geom type="box" size=".5 .3 .2" mass="100"/></body></worldbody></mujoco>'
+    )
+    with pytest.raises(ResponseError, match=message):
+        decay(path, "roll", math.radians(start), settings=["added_mass=none"])
+
+
+def test_what_has_little_freeboard_keeps_its_top_out_of_the_water(tmp_path):
+    path = tmp_path / "spar.xml"
+    path.write_text(
+        '<mujoco><worldbody><body name="spar" pos="0 0 -4"><freejoint/>'
+        '<geom type="cylinder" size=".5 5.5"/>'
+        '<inertial pos="0 0 -2" mass="7853.98" diaginertia="9e4 9e4 1e3"/>'
+        "</body></worldbody></mujoco>"
+    )
+    found = decay(path, settings=["added_mass=none", "water.density=1000"])
+    assert found.start == pytest.approx(0.5, abs=0.01)  # half of 11 m less the draft of 10 m

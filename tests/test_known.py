@@ -52,9 +52,9 @@ def run(tmp_path):
     environment = install(tmp_path)
     (tmp_path / "box.xml").write_text(BOX.replace("DENSITY", "1000"))
 
-    def run_code(code, *options):
+    def run_code(code, *options, first="mujoco"):
         return subprocess.run(
-            [sys.executable, *options, "-c", f"import mujoco\n{FLOAT}\n{code}"],
+            [sys.executable, *options, "-c", f"import {first}, mujoco\n{FLOAT}\n{code}"],
             env=environment, cwd=tmp_path, capture_output=True, text=True, timeout=300,
         )  # fmt: skip
 
@@ -71,6 +71,11 @@ def told(done):
 def test_a_box_floats_where_mujoco_alone_is_imported(run):
     code = "print(float_box(mujoco.MjModel.from_xml_path('box.xml')))"
     assert told(run(code, "-W", "error")) == [f"{DRAFT:.2f}"]
+
+
+def test_it_is_the_same_where_this_package_is_imported_before_mujoco(run):
+    code = "print(float_box(mujoco.MjModel.from_xml_path('box.xml')))"
+    assert told(run(code, first="buoyancy_mj")) == [f"{DRAFT:.2f}"]
 
 
 def test_a_model_of_a_binary_file_floats_and_is_pickled(run):

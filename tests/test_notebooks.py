@@ -24,7 +24,7 @@ def test_there_are_three():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_notebook_runs_and_shows_what_is_kept_in_it(name):
-    pytest.importorskip("matplotlib", reason="the extra 'paper' is not installed")
+    pytest.importorskip("matplotlib", reason="the extra 'charts' is not installed")
     cells = [cell for cell in read(name)["cells"] if cell["cell_type"] == "code"]
     shown = list(script("run_notebooks").run(cells))
     for outputs, cell in zip(shown, cells, strict=True):
@@ -40,7 +40,7 @@ def test_a_notebook_is_kept_as_it_ran_from_top_to_bottom(name):
 
 
 def test_what_a_cell_shows_is_its_print_its_figures_and_its_last_value():
-    pytest.importorskip("matplotlib", reason="the extra 'paper' is not installed")
+    pytest.importorskip("matplotlib", reason="the extra 'charts' is not installed")
     code = "import matplotlib.pyplot as plt\nprint('said')\nplt.plot([1, 2])\n6 * 7"
     (outputs,) = script("run_notebooks").run([{"source": [code]}])
     assert outputs[0]["text"] == ["said\n"]

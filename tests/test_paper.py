@@ -237,7 +237,7 @@ def test_without_matplotlib_the_mend_is_told(tmp_path):
     )
     assert done.returncode == 1
     assert (
-        "need matplotlib, which is not installed: pip install 'buoyancy_mj[paper]'" in done.stderr
+        "need matplotlib, which is not installed: pip install 'buoyancy_mj[charts]'" in done.stderr
     )
     assert "Traceback" not in done.stderr
 

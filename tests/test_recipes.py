@@ -33,7 +33,8 @@ def test_the_code_on_the_page_is_that_of_the_file(name):
 
 
 @pytest.mark.parametrize("name", sorted(PAGES))
-def test_the_example_prints_what_the_page_says(name, capsys):
+def test_the_example_prints_what_the_page_says(name, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     for module in NEEDS.get(name, ()):
         if importlib.util.find_spec(module) is None:
             pytest.skip(f"'{module}' is not installed")

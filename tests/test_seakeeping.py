@@ -187,6 +187,15 @@ def test_a_summary_asked_for_under_way_does_not_change_the_next(tmp_path):
         assert one.summary().values()[name] == wanted, name
 
 
+def test_natural_periods_have_the_added_mass_that_acts():
+    # A and m of models/oes_sphere: 4.377 s with added mass, 3.662 s without
+    for source, heave, carries in (("model", 4.377, True), ("none", 3.662, False)):
+        scene = read_scene(catalog.scenes()["sphere_decay"], [f"added_mass={source}"])
+        (periods,) = Simulation(scene).summary(with_periods=True).natural_periods.values()
+        assert periods.heave == pytest.approx(heave, abs=2e-3)
+        assert periods.with_added_mass == carries
+
+
 def test_nothing_is_known_before_the_first_step():
     summary = simulate("auv_waves").summary()
     assert math.isnan(summary.seakeeping.heave.range)

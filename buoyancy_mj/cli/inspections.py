@@ -100,7 +100,7 @@ def inspect_(
     if as_json:
         typer.echo(json.dumps(json_report.to_json(inspection), indent=2, allow_nan=False))
     else:
-        steps = list_next_steps(inspection, model, details=details)
+        steps = list_next_steps(inspection, model, water or [], details=details)
         out.print(report.to_tables(inspection, steps, details=details))
 
     # files; the standard error tells of them, since the standard output may be JSON
@@ -142,7 +142,7 @@ def _draw_plots(inspection: Inspection, folder: Path) -> None:
         if error.name is None or not error.name.startswith("matplotlib"):
             raise
         raise ModelError(
-            "--plot needs matplotlib, which is not installed: pip install 'buoyancy_mj[paper]', "
+            "--plot needs matplotlib, which is not installed: pip install 'buoyancy_mj[charts]', "
             "or leave it out"
         ) from error
     try:

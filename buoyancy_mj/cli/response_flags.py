@@ -204,6 +204,6 @@ def import_charts(flag: str, path: Path, module: str = "charts") -> ModuleType:
         if error.name is None or not error.name.startswith("matplotlib"):
             raise
         raise ResponseError(
-            f"{flag} needs matplotlib, which is not installed: pip install 'buoyancy_mj[paper]', "
+            f"{flag} needs matplotlib, which is not installed: pip install 'buoyancy_mj[charts]', "
             "or leave it out"
         ) from error

@@ -16,7 +16,7 @@ except ModuleNotFoundError as error:
         raise
     raise BuoyancyError(
         "the figures of the reproduction need matplotlib, which is not installed: "
-        "pip install 'buoyancy_mj[paper]'"
+        "pip install 'buoyancy_mj[charts]'"
     ) from error
 
 _ALL = (

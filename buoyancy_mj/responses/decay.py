@@ -26,6 +26,10 @@ RESTORED = ("heave", "roll", "pitch")
 """Motions that still water restores."""
 HEAVE_PART = 0.2
 """From where heave is let go by default, as a part of the draft."""
+HALF = 0.5
+"""The most of that, as a part of the freeboard: the top stays out of the water."""
+BACK = 0.1
+"""How far from its rest a vehicle may come to an end, as a part of the start."""
 TURN = math.radians(10.0)
 """From where roll and pitch are let go by default [rad]."""
 SAMPLES = 100
@@ -124,9 +128,10 @@ def decay(
 
     Args:
         subject: a scene, or a model or scene by its file or name, see `respond`. It is brought to
-            rest first, whatever its start; waves are left out.
+            rest first, whatever its start; waves are left out, and controllers rest.
         motion: 'heave', 'roll' or 'pitch'.
-        start: from where [m, rad]; None for a fifth of the draft, or 10 degrees. It turns about the
+        start: from where [m, rad]; None for a fifth of the draft (half of the freeboard at
+            most), or 10 degrees. It turns about the
             centre of gravity.
         settings: texts KEY=VALUE laid over the scene, as for `--set`; not for a `Scene`.
         trust: whether to run the Python files that the scene names as controllers.
@@ -143,6 +148,7 @@ def decay(
     if motion not in RESTORED:
         raise ResponseError(f"there is no decay of '{motion}'; {choices(motion, RESTORED)}")
     scene = subject if isinstance(subject, Scene) else read_subject(subject, settings)
+    scene = dataclasses.replace(scene, control=())
     if scene.vehicle is not None and scene.start.at is None:
         scene = dataclasses.replace(scene, start=dataclasses.replace(scene.start, at=EQUILIBRIUM))
     at_rest = prepare(scene, trust=trust)
@@ -153,9 +159,16 @@ def decay(
             f"nothing restores the {motion} of '{scene.title}' where it rests (its stiffness is "
             f"{at.stiffness[axis, axis]:.4g}), so that it does not swing; choose another motion"
         )
-    begin = HEAVE_PART * at.draft if motion == "heave" else TURN
+    begin = TURN
+    if motion == "heave":
+        begin = min(HEAVE_PART * at.draft, HALF * at_rest.freeboard)
     if start is not None:
         begin = read_number(ResponseError, "the start of a decay", start)
+    if motion != "heave" and abs(begin) >= math.pi:
+        raise ResponseError(
+            f"the start of the {motion} is {math.degrees(begin):.4g} degrees; it must be less than "
+            "half a turn from rest"
+        )
     if begin == 0.0:
         raise ResponseError("the start of a decay is 0, where the vehicle rests; give another")
 
@@ -168,6 +181,9 @@ def decay(
     later = track.times > 0.0
     times = np.append(0.0, track.times[later])
     values = np.append(begin, _read_motion(track, released, axis, rest)[later])
+    if motion != "heave":
+        values = np.unwrap(values)
+    _check_end(motion, times, values, natural)
     peaks = find_peaks(times, values)
     return Decay(
         title=scene.title,
@@ -183,6 +199,24 @@ def decay(
         natural_period=natural,
         dry_period=float(at.natural_periods()[axis - 2]),
     )
+
+
+def _check_end(
+    motion: str, times: NDArray[np.float64], values: NDArray[np.float64], period: float
+) -> None:
+    """Check that a motion swings about its rest at its end.
+
+    Raises:
+        ResponseError: it swings about another place, as a vehicle that has turned over.
+    """
+    last = values[times > times[-1] - period]
+    middle = 0.5 * float(last.max() + last.min())
+    if abs(middle) > max(BACK * abs(values[0]), float(np.ptp(last))):
+        scale, unit = (1.0, "m") if motion == "heave" else (math.degrees(1.0), "degrees")
+        raise ResponseError(
+            f"let go from {scale * values[0]:.4g} {unit}, the {motion} came to an end "
+            f"{scale * middle:.4g} {unit} away from its rest; let it go from nearer"
+        )
 
 
 def _displace(

@@ -26,7 +26,8 @@ from buoyancy_mj.sea.spectra import JonswapSea, PiersonMoskowitzSea
 from buoyancy_mj.values import read_array, read_number
 
 PART_OF_DRAFT = 0.05
-"""Amplitude of the waves by default, as a part of the vehicle's draft; see `STEEPNESS`."""
+"""Amplitude of the waves by default, as a part of the vehicle's draft, or of its freeboard where
+that is less; see `STEEPNESS`."""
 STEEPNESS = 0.01
 """Height over length that such waves do not exceed."""
 MOST_RUNS = 100_000
@@ -61,8 +62,8 @@ def respond(
         periods: of the waves [s], one or several.
         headings: directions that the waves run to, from the vehicle's heading [rad], one or
             several: 0 for a following sea, pi for a head sea.
-        amplitude: of the regular waves [m]; None for a twentieth of the draft, and a height of at
-            most a hundredth of the length.
+        amplitude: of the regular waves [m]; None for a twentieth of the draft or freeboard, and a
+            height of at most a hundredth of the length.
         sea: an irregular sea to run in, in the place of regular waves; its direction is the
             heading.
         sensors: names of sensors that are measured too, or NAME.0 and so on for one value.
@@ -208,7 +209,9 @@ def _choose_amplitudes(
     if amplitude is not None:
         return np.full(len(wavenumbers), amplitude)
     at = first.at_start
-    tall = at.draft if at.waterplane_area > 0.0 else first.simulation.vehicle.length
+    tall = first.simulation.vehicle.length
+    if at.waterplane_area > 0.0:
+        tall = min(at.draft, first.freeboard)
     return np.minimum(PART_OF_DRAFT * tall, STEEPNESS * math.pi / wavenumbers)
 
 

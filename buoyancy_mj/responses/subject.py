@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from buoyancy_mj.engine.c_functions import raise_causes
 from buoyancy_mj.errors import BuoyancyWarning, ResponseError
 from buoyancy_mj.scenes import catalog
+from buoyancy_mj.scenes.added_inertia import measure_added_mass
 from buoyancy_mj.scenes.overrides import apply_setting
 from buoyancy_mj.scenes.scene import Scene, read_scene, scene_from_table
 from buoyancy_mj.scenes.scene_vehicle import EQUILIBRIUM, name_from_file
@@ -21,9 +20,7 @@ from buoyancy_mj.sea.currents import is_still
 from buoyancy_mj.sea.waves import Wave
 from buoyancy_mj.statics.building import build_vessel_from_hulls
 from buoyancy_mj.statics.floating_pose import pose_vessel
-from buoyancy_mj.statics.heading_axes import rotate_to_heading
 from buoyancy_mj.statics.hydrostatics import Hydrostatics, compute_hydrostatics
-from buoyancy_mj.statics.vessel import Vessel
 
 DEFAULTS: dict[str, Any] = {
     "pressure": "froude-krylov",
@@ -45,6 +42,8 @@ class Subject(NamedTuple):
     """Its centre of gravity in the frame of the root body (3,) [m]."""
     at_start: Hydrostatics
     """Its hydrostatics at the start."""
+    freeboard: float
+    """How far its highest point is over the surface at the start [m]; 0 under it."""
     tether: str
     """What keeps it from floating freely; '' if nothing does."""
     added_mass: NDArray[np.float64]
@@ -128,14 +127,16 @@ def prepare(
             ballast=data.act,
         )
     at_start = compute_hydrostatics(pose_vessel(vessel, vessel.position, vessel.rotation))
+    low, high = vessel.heights(vessel.rotation)
     tether = "" if vessel.tether is None else f"'{vessel.tether.body}' {vessel.tether.how}"
     return Subject(
         simulation=simulation,
         root=vessel.root,
         centre=vessel.centre_of_gravity,
         at_start=at_start,
+        freeboard=max(high - low - at_start.draft, 0.0),
         tether=tether,
-        added_mass=_find_added_mass(simulation, vessel, at_start),
+        added_mass=measure_added_mass(model, vessel, at_start, data.qpos, data.act),
     )
 
 
@@ -161,35 +162,3 @@ def check_scene(scene: Scene) -> None:
             f"the scene has the mission '{scene.mission}', which a referee watches step by step; "
             "take the model alone"
         )
-
-
-def _find_added_mass(
-    simulation: Simulation, vessel: Vessel, at_start: Hydrostatics
-) -> NDArray[np.float64]:
-    """Added mass about the centre of gravity (6, 6) that acts at the start.
-
-    It is what the water adds to MuJoCo's inertia of the root's six freedoms, the other joints held;
-    zero for what is not one kinematic tree on a free joint.
-    """
-    if vessel.tether is not None or len(vessel.trees) > 1:
-        return np.zeros((6, 6))
-    model = simulation.model
-    data = mujoco.MjData(model)
-    data.qpos[:], data.act[:] = simulation.data.qpos, simulation.data.act
-    whole = np.zeros((model.nv, model.nv))
-    with raise_causes():
-        mujoco.mj_forward(model, data)
-    mujoco.mj_fullM(model, data, whole)
-    first = int(model.body_dofadr[vessel.root])
-    inertia = whole[first : first + 6, first : first + 6]
-
-    # from velocities of the centre along the heading to those of MuJoCo's free joint: the origin's
-    # in the world's axes, and the turning in the body's
-    turn = rotate_to_heading(at_start.heading).T
-    body = data.xmat[vessel.root].reshape(3, 3)
-    arm = body @ vessel.centre_of_gravity
-    free = np.zeros((6, 6))
-    free[:3, :3] = turn
-    free[:3, 3:] = np.cross(arm, turn.T).T
-    free[3:, 3:] = body.T @ turn
-    return np.asarray(free.T @ inertia @ free - at_start.mass_matrix, float)

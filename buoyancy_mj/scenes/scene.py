@@ -186,7 +186,7 @@ _RENAMED = {"drag": "damping"}
 """Keys that have another name now."""
 
 
-def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
+def read_scene(path: str | Path, settings: Sequence[str] = ()) -> Scene:
     """Read the scene in a TOML file, with settings laid over it.
 
     Args:
@@ -196,6 +196,7 @@ def read_scene(path: Path, settings: Sequence[str] = ()) -> Scene:
     Raises:
         SceneError: the file or a setting cannot be read, or says something that makes no sense.
     """
+    path = Path(path)
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, ValueError) as error:

@@ -97,8 +97,9 @@ def _compare_numbers(one: "VehicleSummary", sea: "SeaState", periods: "Periods |
         ("waves", _describe_sea(sea)),
     ]
     if periods is not None:
-        heave, roll, pitch = (f"{period:.3g}" for period in periods)
-        told = f"heave {heave}, roll {roll}, pitch {pitch} s (no added mass)"
+        heave, roll, pitch = (f"{period:.3g}" for period in periods[:3])
+        how = "with" if periods.with_added_mass else "without"
+        told = f"heave {heave}, roll {roll}, pitch {pitch} s ({how} added mass)"
         rows.append(("natural periods", told))
     if one.seakeeping.window.length:
         rows += _compare_motions(one.seakeeping, sea)
@@ -110,6 +111,8 @@ def _compare_motions(motions: Seakeeping, sea: "SeaState") -> _Pairs:
     over = motions.window.name
     x, y = motions.drift
     towards = f", towards {math.degrees(math.atan2(y, x)):.0f} degrees"
+    if motions.drift_speed < 0.0005:
+        towards = ""
     up, level = motions.vertical_acceleration.rms, motions.horizontal_acceleration_rms
     load = f"{motions.peak_load:.4g} N, {motions.load_factor:.2f} x its weight"
     return [

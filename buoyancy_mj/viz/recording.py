@@ -197,6 +197,8 @@ class Recording:
                 f"the live viewer did not take everything: {error}", BuoyancyWarning, stacklevel=2
             )
         self._write()
+        # before the page that this process serves is gone
+        self._watch.close()
         return self._file.close(complete=complete) if self._file is not None else None
 
     def _draw_static(self) -> None:

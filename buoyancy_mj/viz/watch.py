@@ -42,6 +42,11 @@ class Watch:
             stream.connect_grpc(address)
             self.streams.append(stream)
 
+    def close(self) -> None:
+        """Send no more; what was sent stays where it was seen."""
+        for stream in self.streams:
+            stream.disconnect()
+
     def _serve(self, port: int) -> str:
         """Serve a page; the address to which to stream."""
         if port not in _SERVED:
