@@ -564,7 +564,9 @@ def test_waters_that_no_data_use_are_forgotten_in_the_end(monkeypatch):
     for i in range(waters.MOST_UNUSED + 10):
         with_water(Water(density=1.0 + i))
     gc.collect()
-    assert len(waters._waters) <= waters.MOST_UNUSED + 3
+    # other tests of this process may have data alive
+    unused = [one for one in waters._waters.values() if not one.compiled.used]
+    assert len(unused) <= waters.MOST_UNUSED + 3
 
 
 def test_threads_make_step_and_free_data_at_once():
