@@ -92,9 +92,13 @@ def _make(name: str, path: Path) -> None:
         run_in(path.parent, *RECORDINGS[name], f"--record={recording}")
         viewer = Path(sys.executable).with_name("rerun")
         flags = ["--screenshot-to", str(picture), "--window-size", "1600x900", "--port", "auto"]
-        with _open_screen("1600x900") as environment:
+        # the pointer stands in the middle of the screen, and so outside of the window
+        with _open_screen("6600x3800") as environment:
             command = [str(viewer), str(recording), *flags]
+            # its notices are its log, and would cover plots
+            environment["RUST_LOG"] = "off"
             subprocess.run(command, check=True, timeout=180, env=environment)
+        _shrink(picture)
     elif name in CHARTS:
         run_in(path.parent, *CHARTS[name], f"--plot={path}")
     elif name in WINDOWS:
@@ -104,11 +108,16 @@ def _make(name: str, path: Path) -> None:
     else:
         run_in(path.parent, "run", *STILLS[name], f"--screenshot={picture}")
     if picture != path:
-        from PIL import Image
+        _shrink(picture, path)
 
-        with Image.open(picture) as image:
-            image.thumbnail((1600, 900))
-            image.save(path, quality=80, method=6)
+
+def _shrink(picture: Path, path: Path | None = None) -> None:
+    """Make a picture no larger than 1600 x 900, in its place or at another path."""
+    from PIL import Image
+
+    with Image.open(picture) as image:
+        image.thumbnail((1600, 900))
+        image.save(path or picture, quality=80, method=6)
 
 
 def run_in(folder: Path, *arguments: str) -> None:
