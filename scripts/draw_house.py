@@ -290,7 +290,10 @@ def _draw_room(axes: Axes, room: Room, box: Box) -> None:
     axes.add_patch(frame)
     style = {"color": INK, "va": "center", "zorder": 4}
     axes.text(left + 0.16, box.y + 0.28, room.name, fontsize=17, weight="bold", **style)
-    size = f"{round(room.lines, -2):,} lines"
+    size = f"{round(room.lines, -2):,}"
+    # where name and size have room beside each other
+    if 0.155 * len(room.name) + 1.2 < box.width:
+        size += " lines"
     axes.text(right - 0.16, box.y + 0.29, size, fontsize=11, ha="right", **style | {"color": WATER})
     idea = textwrap.fill(room.idea, int(9.7 * box.width), max_lines=2, placeholder=" ...")
     axes.text(left + 0.16, box.y + 0.76, idea, fontsize=12.5, linespacing=1.15, **style)
