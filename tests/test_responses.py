@@ -315,6 +315,7 @@ def test_json_holds_all_and_nothing_else(raft):
         (["--periods", "fast"], "--periods is 'fast'; write a:b:n"),
         (["--periods", "0,4"], "periods is [0.0, 4.0]; it must be one or several finite numbers"),
         (["--periods", "4", "--heading", "1:2"], "--heading is '1:2'; write a:b:n"),
+        (["--periods", "2,4,2"], "--periods is '2,4,2', which has 2 twice; give it once"),
         (["--periods", "4", "--amplitude", "-1"], "amplitude is -1.0; it must be above 0"),
         (["--periods", "4", "--of", "whre"], "there is no sensor 'whre'; did you mean 'where'?"),
         (["--periods", "4", "--of", "turn"], "sensor 'turn' gives a quaternion, which has no"),

@@ -119,7 +119,7 @@ def parse_numbers(flag: str, text: str) -> list[float]:
     """Numbers of 'a:b:n', n from a to b, or of 'a,b,c'.
 
     Raises:
-        ResponseError: the text is neither.
+        ResponseError: the text is neither, or has a number twice.
     """
     try:
         if ":" in text:
@@ -136,6 +136,9 @@ def parse_numbers(flag: str, text: str) -> list[float]:
             f"{flag} is {describe(text)}; write a:b:n, n numbers from a to b, as in 2:12:21, or a "
             "list as in 4,6,8"
         ) from None
+    twice = next((one for one in numbers if numbers.count(one) > 1), None)
+    if twice is not None:
+        raise ResponseError(f"{flag} is {describe(text)}, which has {twice:g} twice; give it once")
     return [float(number) for number in numbers]
 
 
