@@ -1,5 +1,6 @@
 """What flags of `respond` and `decay` say: numbers, angles, points, seas and names of files."""
 
+import collections
 import dataclasses
 import importlib
 import math
@@ -136,8 +137,9 @@ def parse_numbers(flag: str, text: str) -> list[float]:
             f"{flag} is {describe(text)}; write a:b:n, n numbers from a to b, as in 2:12:21, or a "
             "list as in 4,6,8"
         ) from None
-    twice = next((one for one in numbers if numbers.count(one) > 1), None)
-    if twice is not None:
+    counts = collections.Counter(numbers)
+    if len(counts) < len(numbers):
+        ((twice, _),) = counts.most_common(1)
         raise ResponseError(f"{flag} is {describe(text)}, which has {twice:g} twice; give it once")
     return [float(number) for number in numbers]
 
