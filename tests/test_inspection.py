@@ -20,6 +20,7 @@ from buoyancy_mj import (
     righting_arm,
 )
 from buoyancy_mj.cli import app
+from buoyancy_mj.inspection.brief import describe_in_brief
 from buoyancy_mj.inspection.inspection import inspect_model
 from buoyancy_mj.inspection.json_report import to_json
 from buoyancy_mj.inspection.report import list_sections, to_markdown
@@ -546,3 +547,15 @@ def test_a_report_is_whole_on_eighty_columns(flags):
 def test_a_draft_is_told_beside_the_height_of_the_vessel():
     (draft,) = [line for line in told_of("hourglass") if line.startswith(" draft")]
     assert draft.split() == ["draft", "0.3394", "m", "of", "0.4", "m", "height"]
+
+
+def test_what_is_inside_of_another_geom_is_told_to_count_once():
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><worldbody><body name="hull"><freejoint/>
+        <geom name="shell" type="box" size=".2 .1 .1" mass="4"/>
+        <geom name="battery" type="box" size=".05 .05 .05" mass="2"/>
+        <geom name="keel" type="box" size=".1 .05 .01" pos="0 0 -.11" mass="1"/>
+        </body></worldbody></mujoco>"""
+    )
+    first, *_ = describe_in_brief(inspect_model(model))
+    assert "1 l of it is inside of other geoms and counts once, so 16.4 l displace" in first.notes

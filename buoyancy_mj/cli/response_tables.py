@@ -92,10 +92,10 @@ def _list_sea(responses: Responses, sea: Sea, duration: float) -> Iterator[Table
             *(f"{name}\n[{unit}]" for name, unit in zip(responses.names, units, strict=False)),
         )
         values = np.array([[getattr(one, field) for one in row[:count]] for row in found]) * scales
-        # what the sea does not move has the noise of rounding
-        least = 1e-6 * values.max() + 1e-3 * values.max(axis=0)
-        for heading, row in zip(responses.headings, values, strict=True):
-            cells = (f"{x:.3g}" if x > few else "-" for x, few in zip(row, least, strict=True))
+        # none where no wave moves it
+        is_none = responses.normal_sizes[:, :, :count].max(axis=1) < FAINTEST
+        for heading, row, none in zip(responses.headings, values, is_none, strict=True):
+            cells = ("-" if no else f"{x:.3g}" for x, no in zip(row, none, strict=True))
             table.add_row(f"{math.degrees(heading):.4g}", *cells)
         yield table
 

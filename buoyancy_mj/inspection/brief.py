@@ -17,6 +17,8 @@ from buoyancy_mj.inspection.tables import (
 from buoyancy_mj.inspection.vessel_sections import describe_centres, describe_free_surface
 from buoyancy_mj.inspection.vessels import VesselInspection
 
+OVERLAP = 1e-3
+"""Part of the volume that is told if it is inside of other geoms."""
 _MOST_NAMED = 4
 """Most names in a sentence; of more the first are told, and how many there are."""
 
@@ -60,7 +62,19 @@ def _describe_groups(inspection: Inspection) -> Section:
         rows.append((group.name + part, *where, shape, *volumes, share))
     where = ("body",) if len(bodies) > 1 else ()
     header = ("what displaces water", *where, "shape", "each [l]", "in all [l]", "share [%]")
-    return Section(inspection.title, header, tuple(rows), tuple(_note_geoms(inspection.geoms)))
+    notes = [*_note_overlap(inspection, whole), *_note_geoms(inspection.geoms)]
+    return Section(inspection.title, header, tuple(rows), tuple(notes))
+
+
+def _note_overlap(inspection: Inspection, volume: float) -> list[str]:
+    """A sentence on what counts once, since geoms of a `volume` [m^3] in all overlap."""
+    displaced = sum(one.total.displacement / one.vessel.water.density for one in inspection.vessels)
+    if displaced <= 0.0 or volume - displaced < OVERLAP * volume:
+        return []
+    return [
+        f"{format_number(1e3 * (volume - displaced))} l of it is inside of other geoms and counts "
+        f"once, so {format_number(1e3 * displaced)} l displace"
+    ]
 
 
 def _note_geoms(geoms: Sequence[GeomInspection]) -> list[str]:

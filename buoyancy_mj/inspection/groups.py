@@ -19,12 +19,9 @@ class GeomGroup(NamedTuple):
     geoms: tuple[GeomInspection, ...]
     """Which they are."""
     volume: float
-    """Volume that each displaces [m^3]."""
-
-    @property
-    def total(self) -> float:
-        """Volume that they displace together [m^3]."""
-        return len(self.geoms) * self.volume
+    """Volume that each displaces, on the mean [m^3]."""
+    total: float
+    """Volume that they displace together, if none is in another [m^3]."""
 
 
 def group_geoms(inspection: Inspection) -> list[GeomGroup]:
@@ -39,10 +36,9 @@ def group_geoms(inspection: Inspection) -> list[GeomGroup]:
         alike.setdefault(key, []).append(geom)
     groups = []
     for geoms in alike.values():
-        (first, *_), mesh = geoms, geoms[0].mesh
-        assert mesh is not None
-        name = _name_group([geom.name for geom in geoms], thrusting=first.name in thrusters)
-        groups.append(GeomGroup(name, tuple(geoms), first.fill * mesh.volume))
+        name = _name_group([one.name for one in geoms], thrusting=geoms[0].name in thrusters)
+        total = sum(one.fill * one.mesh.volume for one in geoms if one.mesh is not None)
+        groups.append(GeomGroup(name, tuple(geoms), total / len(geoms), total))
     return sorted(groups, key=lambda group: -group.total)
 
 

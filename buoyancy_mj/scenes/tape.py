@@ -7,11 +7,15 @@ import numpy as np
 from numpy.lib.stride_tricks import as_strided
 from numpy.typing import NDArray
 
+from buoyancy_mj.errors import EngineError
 from buoyancy_mj.scenes.kinematics import Kinematics
 from buoyancy_mj.scenes.trajectory import Poses
 
 LENGTH = 1024
 """Number of steps that are handed on at once, at least."""
+
+MOST_APART = 16
+"""How far apart the arrays of poses are, over the size of the last, at most."""
 
 Reader = Callable[[NDArray[np.float64], Poses, NDArray[np.float64]], None]
 """Takes times (n,) [s], poses (n, nbody, ...) and sensors (n, nsensordata) of steps."""
@@ -28,6 +32,9 @@ class Tape:
         reader: takes what was kept.
         kinematics: finds poses at coordinates, if steps do not leave those of their beginning.
         with_sensors: whether sensors are kept.
+
+    Raises:
+        EngineError: this MuJoCo is not as expected inside.
     """
 
     def __init__(
@@ -47,6 +54,8 @@ class Tape:
         arrays = data.xpos, data.xmat, data.xipos
         self._shapes = [array.shape for array in arrays]
         places = [(array.ctypes.data - data.xpos.ctypes.data) // 8 for array in arrays]
+        if places != sorted(places) or places[-1] > MOST_APART * data.xipos.size:
+            raise EngineError("this MuJoCo keeps its poses apart; try version 4.0.0")
         self._spans = [
             slice(place, place + array.size) for place, array in zip(places, arrays, strict=True)
         ]
