@@ -11,6 +11,7 @@ from buoyancy_mj.submersion.wetted_surface import Placed, cut_waterlines
 from buoyancy_mj.viz.depth_tint import DepthTint
 from buoyancy_mj.viz.entities import body_entity, geom_entity
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.placed_meshes import keep_mesh
 from buoyancy_mj.viz.sites import draw_sites
 from buoyancy_mj.viz.visible_foils import VisibleFoil, find_visible_foils
 from buoyancy_mj.viz.visible_geoms import find_visible_geoms
@@ -49,14 +50,7 @@ class BodyDrawing:
         """Draw the geoms that move, and foils that are sites, in the frames of their bodies."""
         for geom in self._geoms:
             entity = geom_entity(self._run.model, geom.geom, geom.body)
-            mesh = rr.Mesh3D(
-                vertex_positions=geom.vertices,
-                triangle_indices=geom.faces,
-                vertex_normals=geom.normals,
-            )
-            pose = rr.Transform3D(translation=geom.position, mat3x3=geom.rotation)
-            log.keep(entity, mesh)
-            log.keep(entity, pose)
+            keep_mesh(log, entity, geom, geom.position, geom.rotation)
         for visible in self._foils:
             self._draw_foil(log, visible)
         draw_sites(log, self._run.model)
@@ -77,18 +71,11 @@ class BodyDrawing:
 
     def _draw_foil(self, log: Log, visible: VisibleFoil) -> None:
         """Draw a foil that is a site in the frame of its body."""
-        foil, mesh = visible.foil, visible.mesh
+        foil = visible.foil
         entity = (
             f"{body_entity(self._run.model, foil.body)}/{rr.escape_entity_path_part(foil.name)}"
         )
-        plate = rr.Mesh3D(
-            vertex_positions=mesh.vertices,
-            triangle_indices=mesh.faces,
-            vertex_normals=mesh.normals,
-            albedo_factor=visible.colour,
-        )
-        log.keep(entity, plate)
-        log.keep(entity, rr.Transform3D(translation=foil.middle, mat3x3=foil.body_from_foil))
+        keep_mesh(log, entity, visible.mesh, foil.middle, foil.body_from_foil, visible.colour)
 
     def _draw_waterline(self, log: Log, frame: Frame) -> None:
         """Draw the waterline on all hulls that the surface cuts."""

@@ -2,12 +2,12 @@
 
 import mujoco
 import numpy as np
-import rerun as rr
 
 from buoyancy_mj.viz.endless_floor import EndlessFloor, is_endless_floor
 from buoyancy_mj.viz.entities import geom_entity
 from buoyancy_mj.viz.eye import Eye
 from buoyancy_mj.viz.log import Log
+from buoyancy_mj.viz.placed_meshes import keep_mesh
 from buoyancy_mj.viz.tiles import tile_geom
 from buoyancy_mj.viz.visible_geoms import VisibleGeom, find_visible_geoms
 
@@ -47,14 +47,7 @@ class StillGeoms:
         for floor in self._floors:
             floor.draw_static(log)
         for entity, geom in self._geoms.items():
-            mesh = rr.Mesh3D(
-                vertex_positions=geom.vertices,
-                triangle_indices=geom.faces,
-                vertex_normals=geom.normals,
-                albedo_factor=geom.colour,
-            )
-            log.keep(entity, mesh)
-            log.keep(entity, rr.Transform3D(translation=geom.position, mat3x3=geom.rotation))
+            keep_mesh(log, entity, geom, geom.position, geom.rotation, geom.colour)
             if entity in self.large:
                 log.keep(entity, tile_geom(geom, self._tile))
 
