@@ -17,11 +17,12 @@ class Text(NamedTuple):
 def write_numbers(summary: Summary) -> Text:
     """Write the numbers of a summary: two beside each other for one vehicle, or a column each."""
     rows = summary.numbers()
+    # without the title of the scene, which takes much width and stands over the picture
     if len(summary.vehicles) > 1:
         return Text(_table(("", *summary.vehicles), rows), len(rows))
     half = -(-len(rows) // 2)
     beside = [(*left, *right) for left, right in zip(rows, [*rows[half:], ("", "")], strict=False)]
-    return Text(_table((summary.scene, "", "", ""), beside[:half]), half)
+    return Text(_table(("", "", "", ""), beside[:half]), half)
 
 
 def write_summary(summary: Summary) -> str:
